@@ -1,0 +1,3 @@
+//! The `lodmark` command.
+
+fn main() {}

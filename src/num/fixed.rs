@@ -1,0 +1,125 @@
+//! Where floats become fixed point: screen coordinates and depth.
+
+/// Bits of the fraction of a snapped screen coordinate: positions are multiples of `1 / 2^bits` pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "u32", into = "u32")]
+pub enum SubpixelBits {
+    /// 8 bits, as GPUs have; guard band +-2^14 pixels.
+    Eight,
+    /// 16 bits, for cross-checks against ray casting; guard band +-2^13 pixels.
+    Sixteen,
+}
+
+impl SubpixelBits {
+    /// 8 or 16.
+    #[inline]
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        match self {
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+
+    /// Sub-pixel steps in a pixel: 256 or 65,536.
+    #[inline]
+    #[must_use]
+    pub const fn scale(self) -> i32 {
+        1 << self.bits()
+    }
+
+    /// Half the side, in pixels, of the square around the origin inside which no triangle is clipped at the sides.
+    ///
+    /// With it every snapped coordinate is at most 2^29 in magnitude, every difference 2^30 and every edge function
+    /// 2^61: `i64` never overflows.
+    #[inline]
+    #[must_use]
+    pub const fn guard_band(self) -> f64 {
+        match self {
+            Self::Eight => 16_384.0,
+            Self::Sixteen => 8_192.0,
+        }
+    }
+
+    /// The nearest multiple of the sub-pixel step to `x` pixels, ties to even; `x` lies inside the guard band.
+    #[inline]
+    #[must_use]
+    pub fn snap(self, x: f64) -> i32 {
+        (x * f64::from(self.scale())).round_ties_even() as i32
+    }
+}
+
+impl From<SubpixelBits> for u32 {
+    fn from(bits: SubpixelBits) -> Self {
+        bits.bits()
+    }
+}
+
+impl TryFrom<u32> for SubpixelBits {
+    type Error = String;
+
+    fn try_from(bits: u32) -> Result<Self, String> {
+        match bits {
+            8 => Ok(Self::Eight),
+            16 => Ok(Self::Sixteen),
+            other => Err(format!("sub-pixel bits are 8 or 16, not {other}")),
+        }
+    }
+}
+
+/// Depth in [0, 1] as a multiple of 2^-32, rounded down and clamped; 0 is the near plane.
+#[inline]
+#[must_use]
+pub fn depth(z01: f64) -> u32 {
+    // `as` saturates: below 0 gives 0, above the range u32::MAX.
+    (z01 * 4_294_967_296.0) as u32
+}
+
+/// An intensity in [0, 1] as an 8-bit level, rounded to nearest (halves up) and clamped.
+#[inline]
+#[must_use]
+pub fn level(intensity: f64) -> u8 {
+    (intensity * 255.0 + 0.5) as u8
+}
+
+/// Luma of 8-bit red, green and blue: the NTSC weights in 16 bits.
+#[inline]
+#[must_use]
+pub const fn luma(rgb: [u8; 3]) -> u8 {
+    ((19_595 * rgb[0] as u32 + 38_470 * rgb[1] as u32 + 7_471 * rgb[2] as u32 + 32_768) >> 16) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ties_snap_to_even_and_never_away_from_zero() {
+        let bits = SubpixelBits::Eight;
+        for (x, snapped) in [
+            (0.5, 0),
+            (1.5, 2),
+            (2.5, 2),
+            (-0.5, 0),
+            (-1.5, -2),
+            (0.500_001, 1),
+        ] {
+            assert_eq!(bits.snap(x / 256.0), snapped, "{x} sub-pixels");
+        }
+    }
+
+    #[test]
+    fn depth_clamps_outside_the_near_and_far_planes() {
+        assert_eq!(depth(-1.0), 0);
+        assert_eq!(depth(0.5), 1 << 31);
+        assert_eq!(depth(1.0), u32::MAX);
+        assert_eq!(depth(7.0), u32::MAX);
+    }
+
+    #[test]
+    fn luma_of_grey_is_that_grey() {
+        for v in 0..=255 {
+            assert_eq!(luma([v; 3]), v);
+        }
+    }
+}

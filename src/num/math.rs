@@ -1,0 +1,117 @@
+//! Square roots, lengths and the few transcendental functions, each with the same bits on every platform.
+//!
+//! `sqrt` is correctly rounded by IEEE 754 everywhere; the others come from the `libm` crate, whose software
+//! implementations do not depend on the platform (std's do). Angles are radians.
+
+use glam::DVec3;
+
+/// Correctly rounded square root. Negative input gives NaN.
+#[inline]
+#[must_use]
+#[expect(clippy::disallowed_methods, reason = "this is the one caller")]
+pub fn sqrt(x: f64) -> f64 {
+    x.sqrt()
+}
+
+/// Euclidean length of `v`.
+#[inline]
+#[must_use]
+pub fn length(v: DVec3) -> f64 {
+    sqrt(v.dot(v))
+}
+
+/// `v / |v|`, or `None` where `v` has no direction (zero, or a component that is not finite).
+#[inline]
+#[must_use]
+pub fn unit(v: DVec3) -> Option<DVec3> {
+    let l = length(v);
+    if l > 0.0 && l < f64::INFINITY {
+        Some(v / l)
+    } else {
+        None
+    }
+}
+
+/// Sine.
+#[must_use]
+pub fn sin(x: f64) -> f64 {
+    libm::sin(x)
+}
+
+/// Cosine.
+#[must_use]
+pub fn cos(x: f64) -> f64 {
+    libm::cos(x)
+}
+
+/// Tangent.
+#[must_use]
+pub fn tan(x: f64) -> f64 {
+    libm::tan(x)
+}
+
+/// Angle of the point `(x, y)`, in (-pi, pi].
+#[must_use]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
+/// Logarithm to base 10.
+#[must_use]
+pub fn log10(x: f64) -> f64 {
+    libm::log10(x)
+}
+
+/// `x` to a whole power, by squaring in one written order.
+#[must_use]
+pub fn power(x: f64, exponent: u32) -> f64 {
+    let (mut result, mut square, mut rest) = (1.0, x, exponent);
+    while rest > 0 {
+        if rest & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+        rest >>= 1;
+    }
+    result
+}
+
+/// `x * 2^exponent`, exact unless the result overflows or becomes subnormal.
+#[inline]
+#[must_use]
+pub fn scale_by_power_of_two(x: f64, exponent: i32) -> f64 {
+    libm::ldexp(x, exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_multiplies_as_often_as_the_exponent_says() {
+        for (x, n, expected) in [
+            (3.0, 0, 1.0),
+            (3.0, 1, 3.0),
+            (2.0, 10, 1024.0),
+            (-1.5, 3, -3.375),
+            (0.0, 7, 0.0),
+        ] {
+            assert_eq!(power(x, n).to_bits(), f64::to_bits(expected), "{x}^{n}");
+        }
+    }
+
+    #[test]
+    fn a_vector_without_direction_has_no_unit_vector() {
+        for v in [
+            DVec3::ZERO,
+            DVec3::new(f64::NAN, 0.0, 1.0),
+            DVec3::new(f64::INFINITY, 0.0, 0.0),
+        ] {
+            assert!(unit(v).is_none(), "{v}");
+        }
+        assert_eq!(
+            unit(DVec3::new(0.0, 3.0, 4.0)),
+            Some(DVec3::new(0.0, 0.6, 0.8))
+        );
+    }
+}

@@ -1,0 +1,10 @@
+//! Numbers: the only place where a float becomes fixed point, and the only caller of `sqrt` and `libm`.
+//!
+//! Everything a result depends on is `f64` with `+ - * /` and [`math::sqrt`], or an integer. See the promise in
+//! the crate documentation.
+
+pub mod fixed;
+mod frame;
+pub mod math;
+
+pub use frame::{Frame, Precision};
