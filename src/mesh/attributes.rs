@@ -76,7 +76,7 @@ impl Attributes {
         if stride == 0 {
             return Ok(Self::default());
         }
-        if values.len() % stride != 0 {
+        if !values.len().is_multiple_of(stride) {
             return Err(format!(
                 "{} attribute values are not a whole number of rows of {stride}",
                 values.len()
@@ -134,11 +134,7 @@ impl Attributes {
     /// Number of wedges.
     #[must_use]
     pub fn wedge_count(&self) -> usize {
-        if self.stride == 0 {
-            0
-        } else {
-            self.values.len() / self.stride
-        }
+        self.values.len().checked_div(self.stride).unwrap_or(0)
     }
 
     /// All values of a wedge.

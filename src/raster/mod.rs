@@ -1,5 +1,30 @@
 //! The rasterizer: exact, integer, and the same for every order in which triangles arrive.
+//!
+//! A vertex is transformed in `f64`, snapped to sub-pixel integers ([`Projector`]), and from there on
+//! everything is integer: edge functions, the top-left rule, scanline spans by exact division, depth by exact
+//! division. A pixel is the minimum over `(depth, triangle id)`. Shading happens per triangle or per vertex in `f64`
+//! with `+ - * / sqrt` and becomes an 8-bit level before images are compared.
+//!
+//! Whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them.
 
+mod clip;
+mod coverage;
+mod draw;
+mod face;
+mod paint;
 mod plane;
+mod project;
+mod region;
+mod scene;
+mod setup;
+mod shade;
 
+pub use draw::{Picture, coverage, depths, ids, keys, luma, luma_sums, rgb};
+pub use face::{Face, Pieces};
+pub use paint::Paint;
 pub use plane::Plane;
+pub use project::{Projector, ScreenVertex};
+pub use region::Region;
+pub use scene::Scene;
+pub use setup::Setup;
+pub use shade::{FaceGeometry, Shader};

@@ -1,3 +1,12 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod raster;
+
+/// A property test of so many cases that writes nothing into the source tree when it fails.
+fn cases(count: u32) -> proptest::test_runner::Config {
+    proptest::test_runner::Config {
+        failure_persistence: None,
+        ..proptest::test_runner::Config::with_cases(count)
+    }
+}

@@ -1,0 +1,80 @@
+//! A triangle on its way to the screen: drawn as it is, or in pieces where it needs clipping.
+
+use glam::DVec3;
+
+use super::{Paint, Projector, ScreenVertex, Setup, clip::clip};
+use crate::view::Cull;
+
+/// A triangle of a view: positions, their projections, and its paint.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// Corner positions in the world.
+    pub positions: [DVec3; 3],
+    /// The same corners on the screen.
+    pub screen: [ScreenVertex; 3],
+    /// What it looks like.
+    pub paint: Paint,
+}
+
+/// Whether all of a face could be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pieces {
+    /// Every piece was visited (there may be none).
+    Drawn,
+    /// A coordinate is not finite after the transform: nothing, or not all, was drawn.
+    Dropped,
+}
+
+impl Face {
+    /// Calls `visit` for every set-up piece of the face that can cover a pixel of the image, with the paint of that
+    /// piece. Nearly always one piece; several where the near plane or the guard band cuts it.
+    #[inline]
+    pub fn pieces(
+        &self,
+        projector: &Projector,
+        cull: Cull,
+        mut visit: impl FnMut(&Setup, &Paint),
+    ) -> Pieces {
+        if !self.screen.iter().any(ScreenVertex::is_outside) {
+            if let Some(setup) = Setup::new(self.screen, projector.bits(), cull, projector.image())
+            {
+                visit(&setup, &self.paint);
+            }
+            return Pieces::Drawn;
+        }
+        self.clipped(projector, cull, &mut visit)
+    }
+
+    #[cold]
+    fn clipped(
+        &self,
+        projector: &Projector,
+        cull: Cull,
+        visit: &mut dyn FnMut(&Setup, &Paint),
+    ) -> Pieces {
+        let corners = self.positions.map(|p| projector.clip(p));
+        let (bits, image) = (projector.bits(), projector.image());
+        let complete = match self.paint {
+            Paint::Flat(_) => clip(projector, corners, [[]; 3], |piece| {
+                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
+                    visit(&setup, &self.paint);
+                }
+            }),
+            Paint::Smooth(attributes) => clip(projector, corners, attributes, |piece| {
+                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
+                    visit(&setup, &Paint::Smooth(piece.map(|c| c.1)));
+                }
+            }),
+            Paint::Colored(attributes) => clip(projector, corners, attributes, |piece| {
+                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
+                    visit(&setup, &Paint::Colored(piece.map(|c| c.1)));
+                }
+            }),
+        };
+        if complete {
+            Pieces::Drawn
+        } else {
+            Pieces::Dropped
+        }
+    }
+}

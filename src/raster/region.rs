@@ -1,0 +1,96 @@
+//! A rectangle of pixels.
+
+/// Pixels with `x0 <= x < x1` and `y0 <= y < y1`; empty where a lower bound is not below its upper bound.
+///
+/// A region limits loops over pixels. It never clips geometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// First column.
+    pub x0: i32,
+    /// First row.
+    pub y0: i32,
+    /// One past the last column.
+    pub x1: i32,
+    /// One past the last row.
+    pub y1: i32,
+}
+
+impl Region {
+    /// No pixel at all; the neutral element of [`Region::union`].
+    pub const EMPTY: Self = Self {
+        x0: i32::MAX,
+        y0: i32::MAX,
+        x1: i32::MIN,
+        y1: i32::MIN,
+    };
+
+    /// All pixels of an image.
+    #[must_use]
+    pub const fn image(width: u32, height: u32) -> Self {
+        Self {
+            x0: 0,
+            y0: 0,
+            x1: width as i32,
+            y1: height as i32,
+        }
+    }
+
+    /// True where it has no pixel.
+    #[inline]
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.x0 >= self.x1 || self.y0 >= self.y1
+    }
+
+    /// The pixels in both.
+    #[inline]
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        }
+    }
+
+    /// The smallest region that contains both; an empty one adds nothing.
+    #[inline]
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        if other.is_empty() {
+            return self;
+        }
+        if self.is_empty() {
+            return other;
+        }
+        Self {
+            x0: self.x0.min(other.x0),
+            y0: self.y0.min(other.y0),
+            x1: self.x1.max(other.x1),
+            y1: self.y1.max(other.y1),
+        }
+    }
+
+    /// Columns.
+    #[inline]
+    #[must_use]
+    pub fn width(self) -> usize {
+        if self.is_empty() {
+            0
+        } else {
+            (self.x1 - self.x0) as usize
+        }
+    }
+
+    /// Rows.
+    #[inline]
+    #[must_use]
+    pub fn height(self) -> usize {
+        if self.is_empty() {
+            0
+        } else {
+            (self.y1 - self.y0) as usize
+        }
+    }
+}
