@@ -5,8 +5,10 @@
 //! division. A pixel is the minimum over `(depth, triangle id)`. Shading happens per triangle or per vertex in `f64`
 //! with `+ - * / sqrt` and becomes an 8-bit level before images are compared.
 //!
-//! Whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them.
+//! Whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them. Pictures that follow a change of the mesh:
+//! [`Unrender`], with the published method in [`BucketEngine`].
 
+mod buckets;
 mod clip;
 mod coverage;
 mod draw;
@@ -15,9 +17,11 @@ mod paint;
 mod plane;
 mod project;
 mod region;
+mod rerender;
 mod scene;
 mod setup;
 mod shade;
+mod unrender;
 
 pub use draw::{Picture, coverage, depths, ids, keys, luma, luma_sums, rgb};
 pub use face::{Face, Pieces};
@@ -25,6 +29,8 @@ pub use paint::Paint;
 pub use plane::Plane;
 pub use project::{Projector, ScreenVertex};
 pub use region::Region;
+pub use rerender::{BucketEngine, BucketScratch};
 pub use scene::Scene;
 pub use setup::Setup;
 pub use shade::{FaceGeometry, Shader};
+pub use unrender::{Added, Change, Model, Unrender, Visit};

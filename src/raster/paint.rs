@@ -15,6 +15,26 @@ pub enum Paint {
 }
 
 impl Paint {
+    /// A triangle with one intensity, white or with colours at its corners.
+    #[inline]
+    #[must_use]
+    pub fn flat(intensity: f64, colors: Option<&[[f64; 3]; 3]>) -> Self {
+        match colors {
+            None => Self::Flat(level(intensity)),
+            Some(c) => Self::Colored(c.map(|rgb| rgb.map(|x| x * intensity))),
+        }
+    }
+
+    /// A triangle with an intensity at every corner, white or with colours there.
+    #[inline]
+    #[must_use]
+    pub fn gouraud(intensities: [f64; 3], colors: Option<&[[f64; 3]; 3]>) -> Self {
+        match colors {
+            None => Self::Smooth(intensities.map(|i| [i])),
+            Some(c) => Self::Colored(std::array::from_fn(|k| c[k].map(|x| x * intensities[k]))),
+        }
+    }
+
     /// The luma at a pixel.
     #[inline]
     #[must_use]

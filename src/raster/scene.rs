@@ -2,14 +2,12 @@
 
 use glam::DVec3;
 
-use super::{Face, FaceGeometry, Paint, Shader};
+use super::{Face, FaceGeometry, Paint, Projector, ScreenVertex, Shader};
 use crate::{
     mesh::{ChannelKind, Mesh},
-    num::{fixed::level, math::unit},
+    num::math::unit,
     view::{Interpolation, View},
 };
-
-use super::{Projector, ScreenVertex};
 
 /// A mesh as the rasterizer sees it.
 #[derive(Clone, Debug)]
@@ -94,6 +92,18 @@ impl Scene {
         &self.positions
     }
 
+    /// Vertices of every triangle.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Red, green and blue in [0, 1] at the corners of every triangle; empty where everything is white.
+    #[must_use]
+    pub fn colors(&self) -> &[[[f64; 3]; 3]] {
+        &self.colors
+    }
+
     /// Number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
@@ -140,17 +150,9 @@ impl Scene {
         let color = self.colors.get(t);
         let paint = if intensities.is_empty() {
             let g = &self.faces[t];
-            let intensity = shader.intensity(g.centroid, g.normal);
-            match color {
-                None => Paint::Flat(level(intensity)),
-                Some(c) => Paint::Colored(c.map(|rgb| rgb.map(|x| x * intensity))),
-            }
+            Paint::flat(shader.intensity(g.centroid, g.normal), color)
         } else {
-            let at = corners.map(|v| intensities[v as usize]);
-            match color {
-                None => Paint::Smooth(at.map(|i| [i])),
-                Some(c) => Paint::Colored(std::array::from_fn(|k| c[k].map(|x| x * at[k]))),
-            }
+            Paint::gouraud(corners.map(|v| intensities[v as usize]), color)
         };
         Face {
             positions: corners.map(|v| self.positions[v as usize]),

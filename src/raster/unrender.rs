@@ -1,0 +1,128 @@
+//! Pictures that follow a change of the mesh without being drawn again (Lindstrom & Turk 2000, section 4.2.3).
+//!
+//! "Un-rendering" takes triangles out of pictures that already exist and puts others in. The engines differ in how
+//! they find what the removed triangles hid; the pictures are the same, bit for bit, as drawn from scratch.
+
+use glam::DVec3;
+
+use super::{FaceGeometry, Plane, Scene};
+use crate::view::{Interpolation, ViewSet};
+
+/// A triangle that a change puts into the pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Added {
+    /// Its id; also in [`Change::removed`] where a triangle changes its shape or its shading.
+    pub id: u32,
+    /// Its vertices.
+    pub corners: [u32; 3],
+    /// Red, green and blue at its corners; ignored where the model is white.
+    pub colors: [[f64; 3]; 3],
+}
+
+/// A change of the mesh, as the pictures see it: an edge collapse, a move, a flip, a removal.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Change<'a> {
+    /// Ids of the triangles that disappear or change.
+    pub removed: &'a [u32],
+    /// The triangles that appear or have changed.
+    pub added: &'a [Added],
+    /// New positions; every triangle at such a vertex is in `removed`.
+    pub moved: &'a [(u32, DVec3)],
+    /// New unit vertex normals, where a view is Gouraud shaded; every triangle at such a vertex is in `removed`.
+    pub normals: &'a [(u32, DVec3)],
+}
+
+/// Visits samples whose luma changes: view, index of the sample in its plane, luma before, luma after.
+pub type Visit<'a> = dyn FnMut(usize, usize, u8, u8) + 'a;
+
+/// Pictures of one mesh in all views of a set, kept up to date.
+pub trait Unrender: Sync {
+    /// What one thread needs to evaluate changes.
+    type Scratch: Send;
+
+    /// Room for one thread.
+    fn scratch(&self) -> Self::Scratch;
+
+    /// Visits every sample that the change would alter, without making it.
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch, visit: &mut Visit<'_>);
+
+    /// Makes the change, visiting every sample it alters.
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch, visit: &mut Visit<'_>);
+
+    /// The luma picture of a view.
+    fn luma(&self, view: usize) -> &Plane<u8>;
+
+    /// The keys (`depth << 32 | id`) of a view.
+    fn keys(&self, view: usize) -> &Plane<u64>;
+}
+
+/// The mesh that the pictures show: what does not depend on the view.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(super) positions: Vec<DVec3>,
+    /// Vertices by triangle id.
+    pub(super) corners: Vec<[u32; 3]>,
+    /// Unit vertex normals; empty where no view needs them.
+    pub(super) normals: Vec<DVec3>,
+    /// Corner colours by triangle id; empty where everything is white.
+    pub(super) colors: Vec<[[f64; 3]; 3]>,
+}
+
+impl Model {
+    /// The model of a scene whose ids count from 0 without gaps.
+    #[must_use]
+    pub fn new(scene: &Scene, set: &ViewSet) -> Self {
+        let gouraud = set
+            .views
+            .iter()
+            .any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        Self {
+            positions: scene.positions().to_vec(),
+            corners: scene.triangles().to_vec(),
+            normals: if gouraud {
+                scene.normals().to_vec()
+            } else {
+                Vec::new()
+            },
+            colors: scene.colors().to_vec(),
+        }
+    }
+
+    pub(super) fn apply(&mut self, change: &Change<'_>) {
+        for &(v, p) in change.moved {
+            self.positions[v as usize] = p;
+        }
+        if !self.normals.is_empty() {
+            for &(v, n) in change.normals {
+                self.normals[v as usize] = n;
+            }
+        }
+        for face in change.added {
+            self.corners[face.id as usize] = face.corners;
+            if let Some(colors) = self.colors.get_mut(face.id as usize) {
+                *colors = face.colors;
+            }
+        }
+    }
+
+    /// The position of a vertex after the change.
+    #[inline]
+    pub(super) fn position_after(&self, change: &Change<'_>, vertex: u32) -> DVec3 {
+        change
+            .moved
+            .iter()
+            .find(|m| m.0 == vertex)
+            .map_or_else(|| self.positions[vertex as usize], |m| m.1)
+    }
+
+    /// The geometry of an added triangle.
+    #[inline]
+    pub(super) fn geometry_after(
+        &self,
+        change: &Change<'_>,
+        face: &Added,
+    ) -> (FaceGeometry, [DVec3; 3]) {
+        let positions = face.corners.map(|v| self.position_after(change, v));
+        (FaceGeometry::new(positions), positions)
+    }
+}
