@@ -1,3 +1,4 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod view;
