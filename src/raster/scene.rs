@@ -86,6 +86,20 @@ impl Scene {
         }
     }
 
+    /// With red, green and blue in [0, 1] at the corners of every triangle; white again where `colors` is empty.
+    ///
+    /// # Panics
+    /// Where `colors` covers some of the triangles only.
+    #[must_use]
+    pub fn with_colors(mut self, colors: Vec<[[f64; 3]; 3]>) -> Self {
+        assert!(
+            colors.is_empty() || colors.len() == self.triangles.len(),
+            "colours for every triangle"
+        );
+        self.colors = colors;
+        self
+    }
+
     /// Positions.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {

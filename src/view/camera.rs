@@ -45,6 +45,7 @@ pub enum Interpolation {
 
 /// A specular term for a light at the eye: intensity `(1 - strength) d + strength d^exponent` with `d = |n . l|`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Specular {
     /// Share of the specular term, in [0, 1].
     pub strength: f64,
@@ -54,6 +55,7 @@ pub struct Specular {
 
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Shading {
     /// Flat or Gouraud.
     pub interpolation: Interpolation,

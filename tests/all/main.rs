@@ -2,6 +2,8 @@
 
 mod architecture;
 mod raster;
+mod unrender;
+mod view;
 
 /// A property test of so many cases that writes nothing into the source tree when it fails.
 fn cases(count: u32) -> proptest::test_runner::Config {

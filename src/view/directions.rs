@@ -1,0 +1,106 @@
+//! Directions of view sets: the vertices of regular and nearly regular polyhedra.
+//!
+//! Dodecahedron (20) for edge costs and small rhombicuboctahedron (24) for evaluation: Lindstrom & Turk 2000,
+//! section 3.2. Octahedron with every triangle split in four k times, midpoints put back on the sphere (6, 18, 66,
+//! 258, 1026, 4098 = 4^(k+1) + 2): Zhang & Turk 2002. Unit vectors from the scene towards the viewer.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use crate::{mesh::Edge, num::math};
+
+/// The golden ratio and its inverse, and 1 + the square root of 2, rounded to nearest.
+const GOLDEN: f64 = 1.618_033_988_749_895;
+const GOLDEN_INVERSE: f64 = 0.618_033_988_749_894_8;
+const SILVER: f64 = 2.414_213_562_373_095;
+
+/// Most subdivisions of the octahedron: 4,098 directions.
+pub const OCTAHEDRON_LIMIT: u32 = 5;
+
+/// Both signs of every number of `v`, the last number changing fastest; 0 has one sign.
+fn with_signs(v: [f64; 3], into: &mut Vec<DVec3>) {
+    let signs = |x: f64| {
+        if x == 0.0 { vec![x] } else { vec![-x, x] }
+    };
+    for x in signs(v[0]) {
+        for y in signs(v[1]) {
+            into.extend(signs(v[2]).into_iter().map(|z| DVec3::new(x, y, z)));
+        }
+    }
+}
+
+fn units(corners: &[[f64; 3]]) -> Vec<DVec3> {
+    let mut directions = Vec::new();
+    for &corner in corners {
+        with_signs(corner, &mut directions);
+    }
+    directions.into_iter().filter_map(math::unit).collect()
+}
+
+/// The 20 vertices of the regular dodecahedron.
+#[must_use]
+pub fn dodecahedron() -> Vec<DVec3> {
+    units(&[
+        [1.0, 1.0, 1.0],
+        [0.0, GOLDEN_INVERSE, GOLDEN],
+        [GOLDEN_INVERSE, GOLDEN, 0.0],
+        [GOLDEN, 0.0, GOLDEN_INVERSE],
+    ])
+}
+
+/// The 24 vertices of the small rhombicuboctahedron.
+#[must_use]
+pub fn rhombicuboctahedron() -> Vec<DVec3> {
+    units(&[[SILVER, 1.0, 1.0], [1.0, SILVER, 1.0], [1.0, 1.0, SILVER]])
+}
+
+/// The vertices of the octahedron subdivided `k` times; those of `k - 1` come first, in the same order.
+///
+/// `k` above [`OCTAHEDRON_LIMIT`] counts as the limit.
+#[must_use]
+pub fn octahedron(k: u32) -> Vec<DVec3> {
+    octahedron_faces(k).0
+}
+
+/// [`octahedron`] with its 8 * 4^k triangles, counter-clockwise seen from outside: what the share of the sphere that
+/// a direction stands for is computed from.
+#[must_use]
+pub fn octahedron_faces(k: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let mut vertices = vec![
+        DVec3::X,
+        DVec3::NEG_X,
+        DVec3::Y,
+        DVec3::NEG_Y,
+        DVec3::Z,
+        DVec3::NEG_Z,
+    ];
+    let mut triangles = vec![
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
+    for _ in 0..k.min(OCTAHEDRON_LIMIT) {
+        let mut middles: BTreeMap<Edge, u32> = BTreeMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                let sum = vertices[a as usize] + vertices[b as usize];
+                // No edge joins opposite points, so the sum has a direction.
+                vertices.push(math::unit(sum).unwrap_or(sum));
+                vertices.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    (vertices, triangles)
+}
