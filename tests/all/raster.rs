@@ -91,12 +91,18 @@ fn coordinate(bits: SubpixelBits) -> impl Strategy<Value = i64> {
 fn triangle() -> impl Strategy<Value = (SubpixelBits, [Point; 3], [u32; 3])> {
     proptest::sample::select(&BITS[..]).prop_flat_map(|bits| {
         let point = || (coordinate(bits), coordinate(bits));
-        (Just(bits), [point(), point(), point()], any::<[u32; 3]>())
+        // Small and round depths divide without remainder often.
+        let depth = || prop_oneof![any::<u32>(), 0..9_u32, (0..9_u32).prop_map(|z| z << 16)];
+        (
+            Just(bits),
+            [point(), point(), point()],
+            [depth(), depth(), depth()],
+        )
     })
 }
 
 proptest! {
-    #![proptest_config(crate::cases(400))]
+    #![proptest_config(crate::cases(1500))]
 
     #[test]
     fn coverage_and_depth_equal_exact_rational_arithmetic((bits, corners, depths) in triangle()) {
@@ -132,6 +138,27 @@ proptest! {
         let inside: Vec<_> =
             all.into_iter().filter(|f| f.0 >= x0 && f.0 < region.x1 && f.1 >= y0 && f.1 < region.y1).collect();
         prop_assert_eq!(fragments(screen, bits, region), inside);
+    }
+
+    #[test]
+    fn no_corner_order_changes_a_bit_of_an_interpolated_value(
+        (bits, corners, _) in triangle(),
+        attributes in [any::<[u16; 2]>(), any::<[u16; 2]>(), any::<[u16; 2]>()],
+        w_inverse in [0.01..3.0, 0.01..3.0, 0.01..3.0_f64],
+    ) {
+        let at = |order: [usize; 3]| {
+            let screen = order.map(|i| ScreenVertex { w_inverse: w_inverse[i], ..vertex(corners[i], 0) });
+            let values = order.map(|i| attributes[i].map(|x| f64::from(x) / 65_535.0));
+            let setup = Setup::new(screen, bits, Cull::None, Region::image(64, 64))?;
+            let mut found = Vec::new();
+            setup.fragments(setup.bounds(), |x, y, _| {
+                found.extend(setup.interpolate(&values, x, y).map(f64::to_bits));
+            });
+            Some(found)
+        };
+        for order in [[1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            prop_assert_eq!(at(order), at([0, 1, 2]));
+        }
     }
 
     #[test]

@@ -250,7 +250,7 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> Difference {
 }
 
 proptest! {
-    #![proptest_config(crate::cases(300))]
+    #![proptest_config(crate::cases(1000))]
 
     #[test]
     fn incremental_pictures_equal_pictures_drawn_from_scratch(
