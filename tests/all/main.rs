@@ -1,3 +1,5 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod metric;
+mod metric_surface;
