@@ -3,8 +3,11 @@
 mod error;
 mod progress;
 
+pub mod io;
 pub mod mesh;
+pub mod metric;
 pub mod num;
+pub mod output;
 pub mod raster;
 pub mod view;
 

@@ -12,3 +12,5 @@ fn cases(count: u32) -> proptest::test_runner::Config {
         ..proptest::test_runner::Config::with_cases(count)
     }
 }
+mod metric;
+mod metric_surface;

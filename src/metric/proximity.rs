@@ -1,0 +1,201 @@
+//! A tree of boxes that finds the distance from a point to a set of triangles.
+//!
+//! **The answer does not depend on the tree.** It is the minimum, over *all* triangles, of the squared distance as
+//! `Triangle::closest` computes it: rounded, but a function of point and triangle alone. A box is skipped only where
+//! its squared distance is not below the best so far, and a box distance never exceeds the computed distance of a
+//! triangle inside: the closest point is clamped to the triangle's box, rounded subtraction, squaring and addition
+//! are monotonic, and both distances are summed in the same order. So neither the split rule nor the starting bound
+//! nor the order of the search can change a bit.
+//! Boxes are `f64` minima and maxima of coordinates: nothing is rounded. Limits: fewer than 2^31 triangles.
+
+use glam::DVec3;
+
+use super::triangle::{Triangle, squared};
+
+/// Triangles in a leaf.
+const LEAF: usize = 4;
+/// Below this many triangles a subtree is built on one thread.
+const PARALLEL: usize = 4_096;
+/// Deepest tree: halving 2^31 triangles down to a leaf.
+const DEPTH: usize = 32;
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// Leaf: index of the first triangle. Inner node: index of the second child; the first one follows the node.
+    index: u32,
+    /// Triangles in a leaf; 0 for an inner node.
+    count: u32,
+}
+
+impl Node {
+    /// Squared distance from `p`, 0 inside.
+    #[inline]
+    fn squared_distance(&self, p: DVec3) -> f64 {
+        squared((self.low - p).max(p - self.high).max(DVec3::ZERO))
+    }
+}
+
+/// Triangles in a tree of boxes.
+#[derive(Clone, Debug)]
+pub(super) struct Proximity {
+    nodes: Vec<Node>,
+    triangles: Vec<Triangle>,
+}
+
+impl Proximity {
+    /// Builds the tree by halving at the median of the longest side; O(n log n). `None` without triangles.
+    pub(super) fn new(mut triangles: Vec<Triangle>) -> Option<Self> {
+        if triangles.is_empty() {
+            return None;
+        }
+        let blank = Node {
+            low: DVec3::ZERO,
+            high: DVec3::ZERO,
+            index: 0,
+            count: 0,
+        };
+        let mut nodes = vec![blank; node_count(triangles.len())];
+        build(&mut nodes, &mut triangles, 0, 0);
+        Some(Self { nodes, triangles })
+    }
+
+    /// Squared distance from `p` to the triangles and the index of a triangle of the tree that has it. `near` is a
+    /// guess of that triangle: a good one saves time and changes no distance.
+    pub(super) fn squared_distance(&self, p: DVec3, near: u32) -> (f64, u32) {
+        let mut best = (self.triangles[near as usize].closest(p).1, near);
+        let mut stack = [(0_u32, 0.0_f64); DEPTH + 1];
+        stack[0] = (0, self.nodes[0].squared_distance(p));
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let (index, bound) = stack[height];
+            if bound >= best.0 {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                for i in node.index..node.index + node.count {
+                    let squared = self.triangles[i as usize].closest(p).1;
+                    if squared < best.0 {
+                        best = (squared, i);
+                    }
+                }
+                continue;
+            }
+            let [mut far, mut close] =
+                [index + 1, node.index].map(|i| (i, self.nodes[i as usize].squared_distance(p)));
+            if far.1 < close.1 {
+                (far, close) = (close, far);
+            }
+            // Each level leaves at most one node behind, so the stack never exceeds the depth.
+            for child in [far, close] {
+                if child.1 < best.0 {
+                    stack[height] = child;
+                    height += 1;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// A binary tree with full leaves except the last: one inner node less than leaves.
+fn node_count(triangles: usize) -> usize {
+    2 * triangles.div_ceil(LEAF) - 1
+}
+
+/// Fills `nodes` with the tree of `triangles`; they lie at `node` and `first` of the whole arrays.
+fn build(nodes: &mut [Node], triangles: &mut [Triangle], node: usize, first: usize) {
+    let (mut low, mut high) = (triangles[0].low(), triangles[0].high());
+    for t in &triangles[1..] {
+        low = low.min(t.low());
+        high = high.max(t.high());
+    }
+    let count = triangles.len();
+    if count <= LEAF {
+        nodes[0] = Node {
+            low,
+            high,
+            index: first as u32,
+            count: count as u32,
+        };
+        return;
+    }
+    let side = high - low;
+    let axis = if side.x >= side.y && side.x >= side.z {
+        0
+    } else if side.y >= side.z {
+        1
+    } else {
+        2
+    };
+    let half = (count.div_ceil(LEAF) / 2) * LEAF;
+    // Halves of the sum: the sum itself could be infinite.
+    let centre = |t: &Triangle| 0.5 * t.low()[axis] + 0.5 * t.high()[axis];
+    triangles.select_nth_unstable_by(half, |s, t| centre(s).total_cmp(&centre(t)));
+    let (inner, below) = nodes.split_at_mut(1);
+    let (left_nodes, right_nodes) = below.split_at_mut(node_count(half));
+    let (left, right) = triangles.split_at_mut(half);
+    let second = node + 1 + left_nodes.len();
+    inner[0] = Node {
+        low,
+        high,
+        index: second as u32,
+        count: 0,
+    };
+    let (build_left, build_right) = (
+        || build(left_nodes, left, node + 1, first),
+        || build(right_nodes, right, second, first + half),
+    );
+    if count > PARALLEL {
+        rayon::join(build_left, build_right);
+    } else {
+        let (mut build_left, mut build_right) = (build_left, build_right);
+        build_left();
+        build_right();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Small integer coordinates make ties and degenerate triangles frequent; the scale brings slivers in.
+    fn soup() -> impl Strategy<Value = Vec<[DVec3; 3]>> {
+        let coordinate = (-6_i32..=6, 0_u32..3)
+            .prop_map(|(x, shift)| f64::from(x) / f64::from(1 << (8 * shift)));
+        let point = prop::array::uniform3(coordinate).prop_map(DVec3::from_array);
+        prop::collection::vec(prop::array::uniform3(point), 1..120)
+    }
+
+    proptest! {
+        #[test]
+        fn the_tree_finds_the_very_minimum_over_all_triangles(
+            corners in soup(),
+            p in prop::array::uniform3(-8.0..8.0_f64).prop_map(DVec3::from_array),
+            guess in 0_usize..1000,
+        ) {
+            let triangles: Vec<Triangle> = corners.iter().map(|&c| Triangle::new(c)).collect();
+            let all = triangles.iter().map(|t| t.closest(p).1).fold(f64::INFINITY, f64::min);
+            let tree = Proximity::new(triangles).expect("not empty");
+            let (found, _) = tree.squared_distance(p, (guess % corners.len()) as u32);
+            prop_assert_eq!(found.to_bits(), all.to_bits());
+        }
+
+        #[test]
+        fn no_box_is_farther_than_what_lies_inside(
+            corners in soup(),
+            p in prop::array::uniform3(-8.0..8.0_f64).prop_map(DVec3::from_array),
+        ) {
+            for c in corners {
+                let t = Triangle::new(c);
+                let node = Node { low: t.low(), high: t.high(), index: 0, count: 1 };
+                prop_assert!(node.squared_distance(p) <= t.closest(p).1);
+            }
+        }
+    }
+}

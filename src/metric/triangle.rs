@@ -1,0 +1,112 @@
+//! The point of a triangle that is closest to a point.
+//!
+//! Every Voronoi region (face, three edges, three vertices) and every degenerate triangle (segment, point) gives the
+//! right distance: the candidates of the three edges are right whatever the triangle is, and the face's candidate is
+//! a convex combination of the corners wherever it is admitted, so it never lies outside and never comes too close.
+//! `f64` with `+ - * /` in one written order; the corners are ordered by coordinates first, so the result has the
+//! same bits for every order of the corners. Accurate to a few ulps of the coordinates.
+
+use glam::DVec3;
+
+/// Squared length, in the order in which box distances are summed as well: see `proximity`.
+#[inline]
+pub(super) fn squared(v: DVec3) -> f64 {
+    (v.x * v.x + v.y * v.y) + v.z * v.z
+}
+
+/// A triangle with its corners in ascending order of (x, y, z).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle([DVec3; 3]);
+
+impl Triangle {
+    pub(super) fn new(mut corners: [DVec3; 3]) -> Self {
+        corners.sort_by(|a, b| {
+            a.x.total_cmp(&b.x)
+                .then(a.y.total_cmp(&b.y))
+                .then(a.z.total_cmp(&b.z))
+        });
+        Self(corners)
+    }
+
+    pub(super) fn corners(&self) -> [DVec3; 3] {
+        self.0
+    }
+
+    pub(super) fn low(&self) -> DVec3 {
+        self.0[0].min(self.0[1]).min(self.0[2])
+    }
+
+    pub(super) fn high(&self) -> DVec3 {
+        self.0[0].max(self.0[1]).max(self.0[2])
+    }
+
+    /// Twice the area.
+    pub(super) fn double_area(&self) -> f64 {
+        let [a, b, c] = self.0;
+        crate::num::math::length((b - a).cross(c - a))
+    }
+
+    /// The closest point, inside the bounding box of the corners, and its squared distance.
+    #[inline]
+    pub(super) fn closest(&self, p: DVec3) -> (DVec3, f64) {
+        let [a, b, c] = self.0;
+        let (ab, ac, ap) = (b - a, c - a, p - a);
+        let normal = ab.cross(ac);
+        let norm = normal.dot(normal);
+        // Barycentric coordinates of the projection; NaN or infinite where the triangle has no area.
+        let v = ap.cross(ac).dot(normal) / norm;
+        let w = ab.cross(ap).dot(normal) / norm;
+        let u = 1.0 - v - w;
+        if u >= 0.0 && v >= 0.0 && w >= 0.0 {
+            let face = self.admit(p, a + (ab * v + ac * w));
+            // Well inside and no sliver: the edges cannot be closer by more than rounding.
+            let sturdy = norm > 1e-6 * (squared(ab) * squared(ac));
+            if sturdy && u > 1e-3 && v > 1e-3 && w > 1e-3 {
+                return face;
+            }
+            return nearer(face, self.closest_on_edges(p));
+        }
+        self.closest_on_edges(p)
+    }
+
+    fn closest_on_edges(&self, p: DVec3) -> (DVec3, f64) {
+        let [a, b, c] = self.0;
+        let on = |from, to| self.admit(p, closest_on_segment(p, from, to));
+        nearer(nearer(on(a, b), on(a, c)), on(b, c))
+    }
+
+    /// Moves a candidate that rounding pushed out of the bounding box back in: box distances are then lower bounds
+    /// of triangle distances exactly, not up to rounding.
+    #[inline]
+    fn admit(&self, p: DVec3, candidate: DVec3) -> (DVec3, f64) {
+        let q = candidate.max(self.low()).min(self.high());
+        (q, squared(p - q))
+    }
+}
+
+/// The first of two candidates unless the second is closer.
+#[inline]
+fn nearer(first: (DVec3, f64), second: (DVec3, f64)) -> (DVec3, f64) {
+    if second.1 < first.1 { second } else { first }
+}
+
+#[inline]
+fn closest_on_segment(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
+    let ab = b - a;
+    let (along, norm) = ((p - a).dot(ab), squared(ab));
+    // `norm` is 0 for a segment without length: then both comparisons settle it.
+    if along <= 0.0 {
+        a
+    } else if along >= norm {
+        b
+    } else {
+        a + ab * (along / norm)
+    }
+}
+
+/// The point of a triangle closest to `p`, and its squared distance: both in the units of the positions, which should
+/// have magnitudes around 1 ([`Frame`](crate::num::Frame)): squares of squares must neither overflow nor vanish.
+#[must_use]
+pub fn closest_point(p: DVec3, corners: [DVec3; 3]) -> (DVec3, f64) {
+    Triangle::new(corners).closest(p)
+}
