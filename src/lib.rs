@@ -3,9 +3,11 @@
 mod error;
 mod progress;
 
+pub mod collapse;
 pub mod mesh;
 pub mod num;
 pub mod raster;
+pub mod simplify;
 pub mod view;
 
 pub use error::{Error, Result};
