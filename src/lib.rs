@@ -4,11 +4,13 @@ mod error;
 mod progress;
 
 pub mod io;
+pub mod collapse;
 pub mod mesh;
 pub mod metric;
 pub mod num;
 pub mod output;
 pub mod raster;
+pub mod simplify;
 pub mod view;
 
 pub use error::{Error, Result};

@@ -1,0 +1,356 @@
+//! The one engine behind every method: it takes the cheapest legal collapse until it should stop.
+//!
+//! Evaluations run in parallel in fixed batches whose results are put together by edge id; queue and commits are
+//! serial. The result does not depend on the number of threads.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{
+    Changes, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule, Site,
+    queue::{self, Front, Queue},
+};
+use crate::{Progress, Result};
+
+/// When a run has done enough.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Stop at this number of triangles or fewer.
+    pub triangles: usize,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// There are no more triangles than wanted.
+    TargetReached,
+    /// The next collapse would exceed the method's error limit.
+    ErrorLimit,
+    /// No edge may be collapsed; how many of them each rule blocks.
+    NoLegalCollapse {
+        /// One count per edge that is left.
+        blocked: Refusals,
+    },
+}
+
+/// What a run did. The same for every number of threads.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Counters {
+    /// Collapses committed.
+    pub collapses: u64,
+    /// Edges evaluated, those of rank measurements not counted.
+    pub evaluations: u64,
+    /// Edges an eager queue would have evaluated for the same collapses.
+    pub evaluations_if_eager: u64,
+    /// How often each rule refused in an evaluation.
+    pub refusals: Refusals,
+    /// Where rank measurement is on: for every measured collapse, the share of legal edges that were truly cheaper,
+    /// in [0, 1).
+    pub ranks: Vec<f64>,
+}
+
+/// Watches a run: history, charts, tests.
+pub trait Observer {
+    /// A patch was committed; `live` already has it.
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch);
+}
+
+/// Watches nothing.
+impl Observer for () {
+    fn committed(&mut self, _: &LiveMesh, _: &Patch) {}
+}
+
+/// Edges in a task of the first, complete evaluation.
+const CHUNK: usize = 1024;
+
+/// Collapses between two looks at the progress.
+const REPORT_EVERY: u64 = 256;
+
+/// A mesh, a method and the queue of collapses between them.
+#[derive(Debug)]
+pub struct Engine<M: Method> {
+    live: LiveMesh,
+    method: M,
+    rules: Rules,
+    schedule: Schedule,
+    rank_every: u64,
+    queue: Option<Queue>,
+    counters: Counters,
+    ring: Ring,
+    scratch: M::Scratch,
+    patch: Patch,
+    changes: Changes,
+    inherited: Vec<(u32, Option<Proposal>)>,
+    touched: Vec<u32>,
+}
+
+impl<M: Method> Engine<M> {
+    /// An engine that has not evaluated anything yet.
+    #[must_use]
+    pub fn new(live: LiveMesh, method: M, rules: Rules, schedule: Schedule) -> Self {
+        let scratch = method.scratch();
+        Self {
+            live,
+            method,
+            rules,
+            schedule,
+            rank_every: 0,
+            queue: None,
+            counters: Counters::default(),
+            ring: Ring::default(),
+            scratch,
+            patch: Patch::default(),
+            changes: Changes::default(),
+            inherited: Vec::new(),
+            touched: Vec::new(),
+        }
+    }
+
+    /// Measures the true rank of every `every`-th collapse by evaluating all edges; 0 is off. Changes no result.
+    #[must_use]
+    pub fn with_rank_measured(mut self, every: u64) -> Self {
+        self.rank_every = every;
+        self
+    }
+
+    /// The mesh as it is now.
+    #[must_use]
+    pub fn live(&self) -> &LiveMesh {
+        &self.live
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> &M {
+        &self.method
+    }
+
+    /// What was done so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// The mesh, the method and what was done.
+    #[must_use]
+    pub fn into_parts(self) -> (LiveMesh, M, Counters) {
+        (self.live, self.method, self.counters)
+    }
+
+    /// Collapses until the target is reached, the method's limit would be exceeded, or nothing is legal. May be
+    /// called again with a lower target: the queue continues where it was.
+    ///
+    /// Time: one evaluation per edge at first, then per collapse a handful (lazy) to some forty (eager).
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    pub fn run(
+        &mut self,
+        target: Target,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<End> {
+        let start = self.live.triangle_count();
+        if start <= target.triangles {
+            return Ok(End::TargetReached);
+        }
+        let total = (start - target.triangles) as u64;
+        progress.step("evaluate", 0, u64::from(self.live.edge_ids()))?;
+        let mut queue = match self.queue.take() {
+            Some(queue) => queue,
+            None => self.first_queue(),
+        };
+        let end = loop {
+            if self.live.triangle_count() <= target.triangles {
+                break End::TargetReached;
+            }
+            match queue.front() {
+                None => {
+                    let blocked = self.blocked();
+                    break End::NoLegalCollapse { blocked };
+                }
+                Some(Front::Stale(id)) => self.refresh(&mut queue, &[id]),
+                Some(Front::Ready(id, proposal)) => {
+                    if self.counters.collapses.is_multiple_of(REPORT_EVERY) {
+                        let done = (start - self.live.triangle_count()) as u64;
+                        progress.step("collapse", done, total)?;
+                    }
+                    self.ring.gather(&self.live, id);
+                    let position = proposal.position.position();
+                    self.ring.patch(&self.live, position, &mut self.patch);
+                    if !self.method.within_limit(&self.live, &self.patch, &proposal) {
+                        break End::ErrorLimit;
+                    }
+                    self.measure_rank(id);
+                    self.commit(&mut queue, observer);
+                }
+            }
+        };
+        self.queue = Some(queue);
+        Ok(end)
+    }
+
+    /// Applies `self.patch`, the collapse of `self.ring`, and brings the queue up to date.
+    fn commit(&mut self, queue: &mut Queue, observer: &mut dyn Observer) {
+        let [vertex, gone] = self.ring.ends;
+        self.inherited.clear();
+        for e in self.live.edges_at(gone) {
+            if let Some([a, b]) = self.live.edge(e) {
+                let other = if a == gone { b } else { a };
+                self.inherited.push((other, queue.known(e)));
+            }
+        }
+        self.live.apply(&self.patch, &mut self.changes);
+        self.counters.collapses += 1;
+        self.method.committed(&self.live, &self.patch);
+        observer.committed(&self.live, &self.patch);
+        for &e in &self.changes.deleted {
+            queue.forget(e);
+        }
+        for &e in &self.changes.created {
+            if let Some([a, b]) = self.live.edge(e) {
+                let other = if a == vertex { b } else { a };
+                let old = self.inherited.iter().find(|(x, _)| *x == other);
+                queue.inherit(e, old.and_then(|&(_, proposal)| proposal));
+            }
+        }
+        // Every edge whose ring has a face of the patch ends at the new vertex or at a vertex of the link.
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        touched.extend(self.live.edges_at(vertex));
+        for spoke in &self.ring.spokes {
+            touched.extend(self.live.edges_at(spoke.vertex));
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        for &e in &touched {
+            queue.stale(&self.live, e);
+        }
+        self.counters.evaluations_if_eager += touched.len() as u64;
+        let live = &self.live;
+        match self.schedule {
+            Schedule::Lazy => touched.clear(),
+            Schedule::Semi => {
+                touched.retain(|&e| live.edge(e).is_some_and(|ends| ends.contains(&vertex)))
+            }
+            Schedule::Eager => {}
+        }
+        if !touched.is_empty() {
+            self.refresh(queue, &touched);
+        }
+        self.touched = touched;
+    }
+
+    /// Evaluates edges again and re-keys them.
+    fn refresh(&mut self, queue: &mut Queue, ids: &[u32]) {
+        self.counters.evaluations += ids.len() as u64;
+        if ids.len() <= self.method.evaluations_per_task() {
+            for &id in ids {
+                let outcome = evaluate(
+                    &self.live,
+                    &self.method,
+                    self.rules,
+                    id,
+                    &mut self.ring,
+                    &mut self.scratch,
+                );
+                self.note(queue, id, outcome);
+            }
+        } else {
+            let outcomes = self.evaluate_all(ids, self.method.evaluations_per_task());
+            for (&id, outcome) in ids.iter().zip(outcomes) {
+                self.note(queue, id, outcome);
+            }
+        }
+    }
+
+    fn note(&mut self, queue: &mut Queue, id: u32, outcome: Result<Proposal, Refusal>) {
+        if let Err(refusal) = outcome {
+            self.counters.refusals.add(refusal);
+        }
+        queue.evaluated(&self.live, id, outcome.ok());
+    }
+
+    fn first_queue(&mut self) -> Queue {
+        let ids = self.live_edges();
+        let outcomes = self.evaluate_all(&ids, CHUNK.min(self.method.evaluations_per_task()));
+        self.counters.evaluations += ids.len() as u64;
+        self.counters.evaluations_if_eager += ids.len() as u64;
+        let mut evaluated = Vec::with_capacity(ids.len());
+        for (id, outcome) in ids.into_iter().zip(outcomes) {
+            match outcome {
+                Ok(proposal) => evaluated.push((id, proposal)),
+                Err(refusal) => self.counters.refusals.add(refusal),
+            }
+        }
+        Queue::new(&self.live, evaluated)
+    }
+
+    fn live_edges(&self) -> Vec<u32> {
+        (0..self.live.edge_ids())
+            .filter(|&e| self.live.edge(e).is_some())
+            .collect()
+    }
+
+    /// Evaluates edges in parallel; the outcomes are in the order of `ids`.
+    fn evaluate_all(&self, ids: &[u32], per_task: usize) -> Vec<Result<Proposal, Refusal>>
+    where
+        M: Sync,
+    {
+        let (live, method, rules) = (&self.live, &self.method, self.rules);
+        let chunks: Vec<Vec<_>> = ids
+            .par_chunks(per_task.max(1))
+            .map_init(
+                || (Ring::default(), method.scratch()),
+                |(ring, scratch), chunk| {
+                    let each = chunk.iter();
+                    each.map(|&id| evaluate(live, method, rules, id, ring, scratch))
+                        .collect()
+                },
+            )
+            .collect();
+        chunks.into_iter().flatten().collect()
+    }
+
+    fn blocked(&self) -> Refusals {
+        let mut blocked = Refusals::default();
+        for outcome in self.evaluate_all(&self.live_edges(), CHUNK) {
+            if let Err(refusal) = outcome {
+                blocked.add(refusal);
+            }
+        }
+        blocked
+    }
+
+    fn measure_rank(&mut self, chosen: u32) {
+        if self.rank_every == 0 || !self.counters.collapses.is_multiple_of(self.rank_every) {
+            return;
+        }
+        let ids = self.live_edges();
+        let outcomes = self.evaluate_all(&ids, CHUNK.min(self.method.evaluations_per_task()));
+        let keys: Vec<_> = ids
+            .iter()
+            .zip(outcomes)
+            .filter_map(|(&id, outcome)| Some((id, queue::key(&self.live, id, &outcome.ok()?)?)))
+            .collect();
+        if let Some((_, own)) = keys.iter().find(|(id, _)| *id == chosen) {
+            let cheaper = keys.iter().filter(|(_, key)| key < own).count();
+            self.counters.ranks.push(cheaper as f64 / keys.len() as f64);
+        }
+    }
+}
+
+fn evaluate<M: Method>(
+    live: &LiveMesh,
+    method: &M,
+    rules: Rules,
+    id: u32,
+    ring: &mut Ring,
+    scratch: &mut M::Scratch,
+) -> Result<Proposal, Refusal> {
+    if !ring.gather(live, id) {
+        return Err(Refusal::Unplaced);
+    }
+    let site = Site::new(live, ring, rules)?;
+    method.propose(&site, scratch)
+}

@@ -1,0 +1,255 @@
+//! Which collapses are allowed, and where: topology, features, locks, and the shape of the faces that stay.
+//!
+//! Topology: the link condition of Dey, Edelsbrunner, Guha & Nekhayev 1999 for 2-complexes, which assumes no
+//! manifold: edges that have not exactly two faces (boundaries, fins) form a graph that a collapse must preserve too.
+//! Features: edges where texture coordinates, colours or materials differ, where a texture is mirrored, or with more
+//! than two faces. Shape: the normal of a face that stays turns by less than the given angle in every single step
+//! (a bare sign test lets a chain of steps near 90 degrees flip a face), and no face becomes degenerate.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    LiveMesh, Ring,
+    ring::{Anchor, RingFace, normal},
+};
+
+/// Whether collapses may change the topology.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Topology {
+    /// Holes, handles, components, boundaries and non-manifold curves stay as they are.
+    #[default]
+    Preserve,
+    /// Any edge may be collapsed (Lindstrom & Turk 2000, section 5.2); faces that coincide become one.
+    Free,
+}
+
+/// What a collapse may do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rules {
+    /// Whether the topology may change.
+    pub topology: Topology,
+    /// Smallest cosine between the normals of a face before and after one collapse, in [0, 1).
+    pub normal_cosine: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            topology: Topology::Preserve,
+            normal_cosine: 0.2,
+        }
+    }
+}
+
+macro_rules! refusals {
+    ($($(#[doc = $doc:literal])+ $name:ident => $key:literal,)+) => {
+        /// Why a collapse is not allowed.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum Refusal { $($(#[doc = $doc])+ $name,)+ }
+
+        impl Refusal {
+            /// Every rule, in the order in which they are tested.
+            pub const ALL: &[Self] = &[$(Self::$name,)+];
+
+            /// The rule's name in reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $key,)+ }
+            }
+        }
+    };
+}
+
+refusals! {
+    /// Nothing would be left of the mesh.
+    LastTriangle => "last-triangle",
+    /// A common neighbour of both ends forms no face with them: a hole or handle would close.
+    Link => "link",
+    /// An edge inside joins two boundary (or pinched, or non-manifold) vertices: the surface would be pinched there.
+    Pinch => "pinch",
+    /// A triangle with two boundary edges would vanish, or a loop of three boundary edges would close.
+    Ear => "ear",
+    /// Both ends are corners of the boundary or of a non-manifold curve.
+    Corner => "corner",
+    /// Two faces would coincide.
+    Duplicate => "duplicate",
+    /// Both ends are locked, or one is and the other may not move there.
+    Locked => "locked",
+    /// The edge is no feature but both ends lie on features: a chart would be pinched.
+    FeaturePinch => "feature-pinch",
+    /// Both ends are ends or branchings of features.
+    FeatureCorner => "feature-corner",
+    /// The method found no position, or the file's precision cannot hold it.
+    Unplaced => "unplaced",
+    /// A face would become degenerate.
+    Degenerate => "degenerate",
+    /// A face would turn too far.
+    Flip => "flip",
+    /// The method itself refuses.
+    Method => "method",
+}
+
+/// How often each rule refused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refusals([u64; Refusal::ALL.len()]);
+
+impl Refusals {
+    /// Counts one.
+    pub fn add(&mut self, refusal: Refusal) {
+        self.0[refusal as usize] += 1;
+    }
+
+    /// How often a rule refused.
+    #[must_use]
+    pub fn count(&self, refusal: Refusal) -> u64 {
+        self.0[refusal as usize]
+    }
+
+    /// How often any rule refused.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.0.iter().sum()
+    }
+
+    /// Every rule that refused at least once, with its count.
+    pub fn iter(&self) -> impl Iterator<Item = (Refusal, u64)> {
+        let all = Refusal::ALL.iter().map(|&r| (r, self.count(r)));
+        all.filter(|&(_, count)| count > 0)
+    }
+}
+
+impl Serialize for Refusals {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.iter().map(|(r, count)| (r.name(), count)))
+    }
+}
+
+/// Where the rules that do not depend on the new position allow the new vertex.
+///
+/// # Errors
+/// The first rule that forbids the collapse altogether.
+pub fn anchor(live: &LiveMesh, ring: &Ring, rules: Rules) -> Result<Anchor, Refusal> {
+    let removed = ring.faces.iter().filter(|f| !f.survives).count();
+    if removed == live.triangle_count() {
+        return Err(Refusal::LastTriangle);
+    }
+    if rules.topology == Topology::Preserve {
+        topology(ring)?;
+    }
+    let feature = features(ring, rules)?;
+    let locked = ring.ends.map(|v| live.is_locked(v));
+    match (locked, feature) {
+        ([false, false], anchor) => Ok(anchor),
+        ([true, false], Anchor::Free | Anchor::At(0)) => Ok(Anchor::At(0)),
+        ([false, true], Anchor::Free | Anchor::At(1)) => Ok(Anchor::At(1)),
+        _ => Err(Refusal::Locked),
+    }
+}
+
+fn topology(ring: &Ring) -> Result<(), Refusal> {
+    let common = |s: &super::Spoke| s.faces[0] > 0 && s.faces[1] > 0;
+    if ring.spokes.iter().any(|s| common(s) && !s.beside) {
+        return Err(Refusal::Link);
+    }
+    if ring.faces.iter().any(|f| !f.survives && !f.has_both()) {
+        return Err(Refusal::Duplicate);
+    }
+    let singular = |count: u32| count != 0 && count != 2;
+    if ring.edge_faces == 2 {
+        // Pinched vertices are found last: the walk around them is the dearest test.
+        let on_graph = |end| ring.singular_degree(end) > 0 || ring.is_pinched(end);
+        if on_graph(0) && on_graph(1) {
+            return Err(Refusal::Pinch);
+        }
+        return Ok(());
+    }
+    let ear = |s: &super::Spoke| singular(s.faces[0]) && singular(s.faces[1]);
+    if ring.spokes.iter().any(ear) {
+        return Err(Refusal::Ear);
+    }
+    let corner = |end| ring.singular_degree(end) != 2 || ring.is_pinched(end);
+    if corner(0) && corner(1) {
+        return Err(Refusal::Corner);
+    }
+    Ok(())
+}
+
+/// Seams and borders of materials keep their course (notes: section 3.4, rules a to d).
+fn features(ring: &Ring, rules: Rules) -> Result<Anchor, Refusal> {
+    let complex = ring.spokes.iter().any(|s| s.faces[0] > 2 || s.faces[1] > 2);
+    if rules.topology == Topology::Free && (complex || ring.edge_faces > 2) {
+        return Ok(Anchor::Free);
+    }
+    let degree = ring.feature_degree;
+    let corner = degree.map(|d| d != 0 && d != 2);
+    if ring.edge_feature {
+        match corner {
+            [false, false] => Ok(Anchor::Free),
+            [true, false] => Ok(Anchor::At(0)),
+            [false, true] => Ok(Anchor::At(1)),
+            [true, true] => Err(Refusal::FeatureCorner),
+        }
+    } else {
+        match degree.map(|d| d > 0) {
+            [false, false] => Ok(Anchor::Free),
+            [true, false] => Ok(Anchor::At(0)),
+            [false, true] => Ok(Anchor::At(1)),
+            [true, true] => Err(Refusal::FeaturePinch),
+        }
+    }
+}
+
+/// Smallest ratio of twice the area to the squared longest side below which a triangle counts as degenerate.
+///
+/// Far below what shapes need and far above what rounding leaves of a normal computed from `f32` coordinates in a
+/// frame of size 1.
+pub const DEGENERATE: f64 = 1e-7;
+
+/// Tests the faces that stay with the new vertex at `position` (frame units, already rounded).
+///
+/// # Errors
+/// [`Refusal::Degenerate`] or [`Refusal::Flip`].
+pub fn shape(ring: &Ring, position: DVec3, rules: Rules) -> Result<(), Refusal> {
+    let least = rules.normal_cosine * rules.normal_cosine;
+    for face in ring.faces.iter().filter(|f| f.survives) {
+        let after = face.points_after(position);
+        let (old, new) = (face.normal, normal(after));
+        let new2 = new.dot(new);
+        if is_degenerate(after, new2) {
+            if !was_as_bad(face, after, new2) {
+                return Err(Refusal::Degenerate);
+            }
+            continue;
+        }
+        let old2 = old.dot(old);
+        if is_degenerate(face.points, old2) {
+            continue;
+        }
+        let cosine = old.dot(new);
+        if cosine <= 0.0 || cosine * cosine <= least * (old2 * new2) {
+            return Err(Refusal::Flip);
+        }
+    }
+    Ok(())
+}
+
+/// True where `normal2`, the squared length of the cross product, is too small for the triangle's longest side.
+#[must_use]
+pub fn is_degenerate(points: [DVec3; 3], normal2: f64) -> bool {
+    let side2 = longest2(points);
+    normal2 <= (DEGENERATE * DEGENERATE) * (side2 * side2)
+}
+
+fn was_as_bad(face: &RingFace, after: [DVec3; 3], new2: f64) -> bool {
+    let old2 = face.normal.dot(face.normal);
+    let (side_old, side_new) = (longest2(face.points), longest2(after));
+    is_degenerate(face.points, old2) && new2 * (side_old * side_old) >= old2 * (side_new * side_new)
+}
+
+fn longest2([a, b, c]: [DVec3; 3]) -> f64 {
+    let (x, y, z) = (b - a, c - b, a - c);
+    x.dot(x).max(y.dot(y)).max(z.dot(z))
+}

@@ -1,0 +1,556 @@
+//! The mesh that shrinks: faces, corner lists and edges with stable ids, in frame units.
+//!
+//! Flat `u32` arrays. The faces around a vertex are a list linked through their corners, the edges at a vertex a list
+//! linked through their ends: a patch allocates nothing. Lists have no meaningful order; whoever sums over them sorts
+//! by id first ([`Ring`](super::Ring) does). Nothing is assumed about manifoldness: an edge counts its faces.
+
+use glam::DVec3;
+
+use super::{Patch, PatchFace, wedge::WedgeRows};
+use crate::{
+    mesh::{Attributes, Materials, Mesh, MeshParts},
+    num::{Frame, Precision},
+};
+
+/// No vertex, face, wedge, edge or corner.
+pub const NONE: u32 = u32::MAX;
+
+/// An edge: its ends, the next edge in the list of each end, and its number of faces.
+#[derive(Clone, Copy, Debug)]
+struct EdgeRecord {
+    ends: [u32; 2],
+    next: [u32; 2],
+    faces: u32,
+}
+
+/// Edges that a patch made and unmade; the queue follows them.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    /// New edge ids. An id may be one that an *earlier* patch deleted.
+    pub created: Vec<u32>,
+    /// Edge ids that are no longer in use.
+    pub deleted: Vec<u32>,
+}
+
+/// A mesh under surgery. Triangle and vertex ids are those of the mesh it was made from, for ever.
+#[derive(Clone, Debug)]
+pub struct LiveMesh {
+    frame: Frame,
+    precision: Precision,
+    positions: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    live: usize,
+    first_corner: Vec<u32>,
+    next_corner: Vec<u32>,
+    edges: Vec<EdgeRecord>,
+    free_edges: Vec<u32>,
+    first_edge: Vec<u32>,
+    locked: Vec<bool>,
+    rows: WedgeRows,
+    wedges: Vec<[u32; 3]>,
+    materials: Materials,
+    may_have_features: bool,
+}
+
+impl LiveMesh {
+    /// A live copy of `mesh` (file units, canonical order) in units of `frame`.
+    ///
+    /// Triangles that repeat a vertex have no area and no edges to collapse: they are dead from the start. O(n).
+    #[must_use]
+    pub fn new(mesh: &Mesh, frame: Frame) -> Self {
+        let (vertices, triangles) = (mesh.positions().len(), mesh.triangles().len());
+        let mut live = Self {
+            frame,
+            precision: mesh.precision(),
+            positions: mesh.positions().iter().map(|&p| frame.enter(p)).collect(),
+            faces: vec![[NONE; 3]; triangles],
+            live: 0,
+            first_corner: vec![NONE; vertices],
+            next_corner: vec![NONE; 3 * triangles],
+            edges: Vec::with_capacity(triangles / 2 * 3 + 64),
+            free_edges: Vec::new(),
+            first_edge: vec![NONE; vertices],
+            locked: vec![false; vertices],
+            rows: WedgeRows::of(mesh.attributes()),
+            wedges: mesh.attributes().corners().to_vec(),
+            materials: mesh.materials().clone(),
+            may_have_features: false,
+        };
+        let materials = &mesh.materials().of_triangle;
+        live.may_have_features =
+            live.rows.has_feature_channels() || materials.windows(2).any(|m| m[0] != m[1]);
+        let mut created = Vec::new();
+        for (t, &corners) in mesh.triangles().iter().enumerate() {
+            let [a, b, c] = corners;
+            if a != b && b != c && c != a {
+                live.link_face(t as u32, corners);
+                for k in 0..3 {
+                    live.add_side(corners[k], corners[(k + 1) % 3], &mut created);
+                }
+                created.clear();
+            }
+        }
+        live
+    }
+
+    /// From frame units to file units.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// The precision of the file.
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// `p` as the file can store it, in frame units; `None` where it is not finite there.
+    #[must_use]
+    pub fn round(&self, p: DVec3) -> Option<DVec3> {
+        self.frame.round(p, self.precision)
+    }
+
+    /// Number of triangles that are left.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.live
+    }
+
+    /// Number of triangle ids, dead ones included.
+    #[must_use]
+    pub fn triangle_ids(&self) -> u32 {
+        self.faces.len() as u32
+    }
+
+    /// Number of vertex ids, unused ones included.
+    #[must_use]
+    pub fn vertex_ids(&self) -> u32 {
+        self.positions.len() as u32
+    }
+
+    /// Number of edge ids, unused ones included.
+    #[must_use]
+    pub fn edge_ids(&self) -> u32 {
+        self.edges.len() as u32
+    }
+
+    /// Position of a vertex in frame units; of a vertex that is gone, its last one.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[inline]
+    #[must_use]
+    pub fn position(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    /// All positions in frame units, by vertex id.
+    #[must_use]
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// The vertices of a triangle; `None` where it is dead.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    #[inline]
+    #[must_use]
+    pub fn triangle(&self, id: u32) -> Option<[u32; 3]> {
+        let corners = self.faces[id as usize];
+        (corners[0] != NONE).then_some(corners)
+    }
+
+    /// The corner positions of a triangle in frame units; `None` where it is dead.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    #[must_use]
+    pub fn points(&self, id: u32) -> Option<[DVec3; 3]> {
+        Some(self.triangle(id)?.map(|v| self.position(v)))
+    }
+
+    /// The wedges of a triangle; [`NONE`] each where there are no attributes.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    #[must_use]
+    pub fn wedges(&self, id: u32) -> [u32; 3] {
+        if self.wedges.is_empty() {
+            [NONE; 3]
+        } else {
+            self.wedges[id as usize]
+        }
+    }
+
+    /// The material of a triangle, as [`Materials::of`].
+    #[must_use]
+    pub fn material(&self, id: u32) -> u32 {
+        self.materials.of(id as usize)
+    }
+
+    /// The values of all wedges.
+    #[must_use]
+    pub fn rows(&self) -> &WedgeRows {
+        &self.rows
+    }
+
+    /// Number of wedges, unused ones included.
+    #[must_use]
+    pub fn wedge_count(&self) -> u32 {
+        self.rows.count()
+    }
+
+    /// True where texture coordinates, colours or materials can make an edge a feature.
+    #[must_use]
+    pub fn may_have_features(&self) -> bool {
+        self.may_have_features
+    }
+
+    /// True where the vertex must stay where it is.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[must_use]
+    pub fn is_locked(&self, vertex: u32) -> bool {
+        self.locked[vertex as usize]
+    }
+
+    /// Locks or unlocks a vertex. A locked vertex keeps its position and survives every collapse as a place.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn set_locked(&mut self, vertex: u32, locked: bool) {
+        self.locked[vertex as usize] = locked;
+    }
+
+    /// The triangles at a vertex, in no particular order.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn triangles_at(&self, vertex: u32) -> impl Iterator<Item = u32> {
+        let mut corner = self.first_corner[vertex as usize];
+        std::iter::from_fn(move || {
+            (corner != NONE).then(|| {
+                let face = corner / 3;
+                corner = self.next_corner[corner as usize];
+                face
+            })
+        })
+    }
+
+    /// The edges at a vertex, in no particular order.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn edges_at(&self, vertex: u32) -> impl Iterator<Item = u32> {
+        let mut edge = self.first_edge[vertex as usize];
+        std::iter::from_fn(move || {
+            (edge != NONE).then(|| {
+                let now = edge;
+                let record = &self.edges[now as usize];
+                edge = record.next[usize::from(record.ends[1] == vertex)];
+                now
+            })
+        })
+    }
+
+    /// The ends of an edge, the smaller first; `None` where the id is not in use.
+    ///
+    /// # Panics
+    /// Where there is no such id.
+    #[inline]
+    #[must_use]
+    pub fn edge(&self, id: u32) -> Option<[u32; 2]> {
+        let ends = self.edges[id as usize].ends;
+        (ends[0] != NONE).then_some(ends)
+    }
+
+    /// Number of faces at an edge: 1 at a boundary, 2 inside, more where the mesh is not manifold.
+    ///
+    /// # Panics
+    /// Where there is no such id.
+    #[must_use]
+    pub fn faces_at_edge(&self, id: u32) -> u32 {
+        self.edges[id as usize].faces
+    }
+
+    /// The edge between two vertices.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[must_use]
+    pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
+        self.edges_at(a).find(|&e| {
+            let ends = self.edges[e as usize].ends;
+            ends[0] == b || ends[1] == b
+        })
+    }
+
+    /// Face `id` as it is now, for a patch.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    #[must_use]
+    pub fn patch_face(&self, id: u32) -> PatchFace {
+        PatchFace {
+            id,
+            corners: self.faces[id as usize],
+            wedges: self.wedges(id),
+        }
+    }
+
+    /// Commits a patch. `changes` is cleared and then says which edges it made and unmade.
+    ///
+    /// The patch must have been made for this mesh in this state.
+    pub fn apply(&mut self, patch: &Patch, changes: &mut Changes) {
+        changes.created.clear();
+        changes.deleted.clear();
+        // Sides are added before others are removed: an edge that stays never loses its id.
+        pair(&patch.removed, &patch.added, |old, new| {
+            let Some(new) = new else { return };
+            for k in 0..3 {
+                let side = [new.corners[k], new.corners[(k + 1) % 3]];
+                if old.is_none_or(|o| [o.corners[k], o.corners[(k + 1) % 3]] != side) {
+                    self.add_side(side[0], side[1], &mut changes.created);
+                }
+            }
+        });
+        pair(&patch.removed, &patch.added, |old, new| {
+            let Some(old) = old else { return };
+            for k in 0..3 {
+                let side = [old.corners[k], old.corners[(k + 1) % 3]];
+                if new.is_none_or(|n| [n.corners[k], n.corners[(k + 1) % 3]] != side) {
+                    self.remove_side(side[0], side[1], &mut changes.deleted);
+                }
+            }
+        });
+        pair(&patch.removed, &patch.added, |old, new| match (old, new) {
+            (Some(old), None) => self.unlink_face(old.id),
+            (None, Some(new)) => self.link_face(new.id, new.corners),
+            (Some(old), Some(new)) => {
+                for k in 0..3 {
+                    if old.corners[k] != new.corners[k] {
+                        self.unlink_corner(3 * old.id + k as u32, old.corners[k]);
+                        self.faces[old.id as usize][k] = new.corners[k];
+                        self.link_corner(3 * old.id + k as u32, new.corners[k]);
+                    }
+                }
+            }
+            (None, None) => {}
+        });
+        if !self.wedges.is_empty() {
+            for face in &patch.added {
+                self.wedges[face.id as usize] = face.wedges;
+            }
+        }
+        self.rows.append(&patch.rows);
+        if let Some(moved) = patch.moved {
+            self.positions[moved.vertex as usize] = moved.to;
+            if let Some(gone) = patch.gone {
+                self.locked[moved.vertex as usize] |= self.locked[gone as usize];
+            }
+        }
+    }
+
+    /// Takes back the patch committed last. Locks are not restored.
+    ///
+    /// The patch must be the one that [`LiveMesh::apply`] committed last of those not yet taken back.
+    pub fn revert(&mut self, patch: &Patch, changes: &mut Changes) {
+        let back = Patch {
+            removed: patch.added.clone(),
+            added: patch.removed.clone(),
+            moved: patch.moved.map(|m| super::Move {
+                vertex: m.vertex,
+                from: m.to,
+                to: m.from,
+            }),
+            ..Patch::default()
+        };
+        self.apply(&back, changes);
+        self.rows.truncate(patch.rows.len());
+    }
+
+    /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and
+    /// wedges are kept.
+    ///
+    /// # Errors
+    /// A sentence, should a promise of [`Mesh`] not hold (a bug).
+    pub fn to_mesh(&self) -> Result<Mesh, String> {
+        let ids: Vec<u32> = (0..self.triangle_ids())
+            .filter(|&t| self.triangle(t).is_some())
+            .collect();
+        let corners = ids.iter().map(|&t| self.faces[t as usize]);
+        let (triangles, vertices) = compacted(corners, self.positions.len());
+        let positions = vertices
+            .iter()
+            .map(|&v| self.frame.leave(self.position(v)))
+            .collect();
+        let attributes = if self.wedges.is_empty() {
+            Attributes::default()
+        } else {
+            let corners = ids.iter().map(|&t| self.wedges[t as usize]);
+            let (corners, wedges) = compacted(corners, self.wedge_count() as usize);
+            let values = wedges
+                .iter()
+                .flat_map(|&w| self.rows.row(w).iter().copied())
+                .collect();
+            Attributes::new(&self.rows.kinds(), values, corners)?
+        };
+        let of_triangle = if self.materials.of_triangle.is_empty() {
+            Vec::new()
+        } else {
+            ids.iter().map(|&t| self.material(t)).collect()
+        };
+        Mesh::new(MeshParts {
+            positions,
+            triangles,
+            attributes,
+            materials: Materials {
+                of_triangle,
+                ..self.materials.clone()
+            },
+            precision: self.precision,
+        })
+    }
+
+    fn link_corner(&mut self, corner: u32, vertex: u32) {
+        self.next_corner[corner as usize] = self.first_corner[vertex as usize];
+        self.first_corner[vertex as usize] = corner;
+    }
+
+    fn unlink_corner(&mut self, corner: u32, vertex: u32) {
+        let next = self.next_corner[corner as usize];
+        let mut at = self.first_corner[vertex as usize];
+        if at == corner {
+            self.first_corner[vertex as usize] = next;
+            return;
+        }
+        while at != NONE {
+            let after = self.next_corner[at as usize];
+            if after == corner {
+                self.next_corner[at as usize] = next;
+                return;
+            }
+            at = after;
+        }
+    }
+
+    fn link_face(&mut self, id: u32, corners: [u32; 3]) {
+        self.faces[id as usize] = corners;
+        for (k, v) in corners.into_iter().enumerate() {
+            self.link_corner(3 * id + k as u32, v);
+        }
+        self.live += 1;
+    }
+
+    fn unlink_face(&mut self, id: u32) {
+        for (k, v) in self.faces[id as usize].into_iter().enumerate() {
+            self.unlink_corner(3 * id + k as u32, v);
+        }
+        self.faces[id as usize] = [NONE; 3];
+        self.live -= 1;
+    }
+
+    fn add_side(&mut self, a: u32, b: u32, created: &mut Vec<u32>) {
+        if let Some(e) = self.find_edge(a, b) {
+            self.edges[e as usize].faces += 1;
+            return;
+        }
+        let ends = [a.min(b), a.max(b)];
+        let record = EdgeRecord {
+            ends,
+            next: ends.map(|v| self.first_edge[v as usize]),
+            faces: 1,
+        };
+        let id = match self.free_edges.pop() {
+            Some(id) => {
+                self.edges[id as usize] = record;
+                id
+            }
+            None => {
+                self.edges.push(record);
+                (self.edges.len() - 1) as u32
+            }
+        };
+        for v in ends {
+            self.first_edge[v as usize] = id;
+        }
+        created.push(id);
+    }
+
+    fn remove_side(&mut self, a: u32, b: u32, deleted: &mut Vec<u32>) {
+        let Some(id) = self.find_edge(a, b) else {
+            return;
+        };
+        self.edges[id as usize].faces -= 1;
+        if self.edges[id as usize].faces > 0 {
+            return;
+        }
+        for v in [a, b] {
+            self.unlink_edge(id, v);
+        }
+        self.edges[id as usize].ends = [NONE; 2];
+        self.free_edges.push(id);
+        deleted.push(id);
+    }
+
+    fn unlink_edge(&mut self, id: u32, vertex: u32) {
+        let side = |record: &EdgeRecord| usize::from(record.ends[1] == vertex);
+        let record = self.edges[id as usize];
+        let next = record.next[side(&record)];
+        let mut at = self.first_edge[vertex as usize];
+        if at == id {
+            self.first_edge[vertex as usize] = next;
+            return;
+        }
+        while at != NONE {
+            let record = &mut self.edges[at as usize];
+            let k = side(record);
+            if record.next[k] == id {
+                record.next[k] = next;
+                return;
+            }
+            at = record.next[k];
+        }
+    }
+}
+
+/// Calls `visit` for every id in either of two lists of ascending ids.
+fn pair(
+    removed: &[PatchFace],
+    added: &[PatchFace],
+    mut visit: impl FnMut(Option<&PatchFace>, Option<&PatchFace>),
+) {
+    let (mut i, mut j) = (0, 0);
+    while i < removed.len() || j < added.len() {
+        let old = removed
+            .get(i)
+            .filter(|o| added.get(j).is_none_or(|n| o.id <= n.id));
+        let new = added
+            .get(j)
+            .filter(|n| removed.get(i).is_none_or(|o| n.id <= o.id));
+        i += usize::from(old.is_some());
+        j += usize::from(new.is_some());
+        visit(old, new);
+    }
+}
+
+/// Triples renumbered to the indices below `count` that they use, and those indices in ascending order.
+fn compacted(
+    triples: impl Iterator<Item = [u32; 3]> + Clone,
+    count: usize,
+) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut new = vec![NONE; count];
+    for v in triples.clone().flatten() {
+        new[v as usize] = 0;
+    }
+    let used: Vec<u32> = (0..count as u32)
+        .filter(|&v| new[v as usize] == 0)
+        .collect();
+    for (i, &v) in used.iter().enumerate() {
+        new[v as usize] = i as u32;
+    }
+    (triples.map(|t| t.map(|v| new[v as usize])).collect(), used)
+}

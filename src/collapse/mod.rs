@@ -1,0 +1,25 @@
+//! Surgery on a mesh: one engine for every method that simplifies by collapsing edges.
+//!
+//! A [`LiveMesh`] is a mesh that shrinks; its ids are stable. Around every edge lies a [`Ring`]; putting the ring's
+//! two vertices together at a position is a [`Patch`], which exists before it is committed, so that a candidate is
+//! judged under the very ids it would have afterwards. [`legality`] decides which collapses are allowed, a
+//! [`Method`] where the new vertex lies and what it costs, and the [`Engine`] which edge is next.
+
+mod engine;
+mod heap;
+pub mod legality;
+mod live;
+mod method;
+mod patch;
+mod queue;
+mod ring;
+pub mod wedge;
+
+pub use engine::{Counters, End, Engine, Observer, Target};
+pub use heap::{Heap, Key};
+pub use legality::{Refusal, Refusals, Rules, Topology};
+pub use live::{Changes, LiveMesh, NONE};
+pub use method::{Admitted, Method, Proposal, Site};
+pub use patch::{Move, Patch, PatchFace};
+pub use queue::Schedule;
+pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};

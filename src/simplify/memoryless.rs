@@ -1,0 +1,396 @@
+//! Memoryless simplification: Lindstrom & Turk 1998 (placement) and 1999 (cost).
+//!
+//! The new vertex is the solution of up to three linear constraints, tried in order: keep the volume, keep the area
+//! at the boundary, minimise the sum of squared tetrahedra (volume) and triangles (boundary) that the faces sweep,
+//! minimise the distances to the link. A constraint counts where its direction differs by at least one degree from
+//! those before it. Coordinates are relative to the edge's midpoint: the constants are triple products, which cancel
+//! badly far from the origin. Deviations: boundary before volume where there is one (keeps outlines; as CGAL does;
+//! [`ConstraintOrder::Paper`] has the published order), and where the constraints determine no point, the best of
+//! midpoint and ends. Costs have the dimension length^6, in frame units.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    collapse::{Admitted, BoundaryEdge, Method, Proposal, Refusal, Ring, Site},
+    num::math,
+};
+
+/// Which constraint comes first in a ring with boundary edges; without, both are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ConstraintOrder {
+    /// Volume, then boundary, as published.
+    Paper,
+    /// Boundary, then volume.
+    #[default]
+    Cgal,
+}
+
+/// Options of the method.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MemorylessOptions {
+    /// Which constraint comes first.
+    pub lt_order: ConstraintOrder,
+    /// Weight of the swept volumes against the swept boundary areas, in [0, 1]; the areas have one minus it.
+    pub volume_weight: f64,
+}
+
+impl Default for MemorylessOptions {
+    fn default() -> Self {
+        Self {
+            lt_order: ConstraintOrder::default(),
+            volume_weight: 0.5,
+        }
+    }
+}
+
+/// cos^2 and sin^2 of one degree, the least angle between constraints.
+const COS2: f64 = 0.999_695_413_509_547_9;
+const SIN2: f64 = 3.045_864_904_520_854_5e-4;
+
+/// A symmetric 3x3 matrix `[xx, xy, xz, yy, yz, zz]` and a vector: the gradient `H v + c` of a quadratic function.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gradient {
+    h: [f64; 6],
+    c: DVec3,
+}
+
+impl Gradient {
+    fn times(&self, v: DVec3) -> DVec3 {
+        let [xx, xy, xz, yy, yz, zz] = self.h;
+        DVec3::new(
+            xx * v.x + xy * v.y + xz * v.z,
+            xy * v.x + yy * v.y + yz * v.z,
+            xz * v.x + yz * v.y + zz * v.z,
+        )
+    }
+
+    /// Adds `weight * n n^T` and `weight * c`.
+    fn add_outer(&mut self, weight: f64, n: DVec3, c: DVec3) {
+        let products = [
+            n.x * n.x,
+            n.x * n.y,
+            n.x * n.z,
+            n.y * n.y,
+            n.y * n.z,
+            n.z * n.z,
+        ];
+        for (h, p) in self.h.iter_mut().zip(products) {
+            *h += weight * p;
+        }
+        self.c += c * weight;
+    }
+
+    /// Adds `weight * ([e]x)^T [e]x` and `weight * c`.
+    fn add_cross(&mut self, weight: f64, e: DVec3, c: DVec3) {
+        let ee = e.dot(e);
+        let products = [
+            ee - e.x * e.x,
+            -e.x * e.y,
+            -e.x * e.z,
+            ee - e.y * e.y,
+            -e.y * e.z,
+            ee - e.z * e.z,
+        ];
+        for (h, p) in self.h.iter_mut().zip(products) {
+            *h += weight * p;
+        }
+        self.c += c * weight;
+    }
+}
+
+/// Up to three accepted rows `a . v = b`, each of unit length.
+#[derive(Clone, Copy, Debug, Default)]
+struct Constraints {
+    rows: [DVec3; 3],
+    values: [f64; 3],
+    count: usize,
+}
+
+impl Constraints {
+    /// Accepts the row where it is compatible with those before it.
+    fn offer(&mut self, a: DVec3, b: f64) {
+        let a2 = a.dot(a);
+        if !(a2 > 0.0 && a2 < f64::INFINITY && b.is_finite()) {
+            return;
+        }
+        let compatible = match self.count {
+            0 => true,
+            1 => {
+                let d = self.rows[0].dot(a);
+                d * d <= self.rows[0].dot(self.rows[0]) * a2 * COS2
+            }
+            2 => {
+                let n = self.rows[0].cross(self.rows[1]);
+                let d = n.dot(a);
+                d * d > n.dot(n) * a2 * SIN2
+            }
+            _ => false,
+        };
+        if compatible {
+            let l = math::sqrt(a2);
+            self.rows[self.count] = a / l;
+            self.values[self.count] = b / l;
+            self.count += 1;
+        }
+    }
+
+    /// Adds what the minimum of a quadratic function demands in the directions that are still free.
+    fn minimise(&mut self, gradient: &Gradient) {
+        match self.count {
+            0 => {
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    self.descend(gradient, axis);
+                }
+            }
+            1 => {
+                let a = self.rows[0];
+                let (x, y, z) = (a.x.abs(), a.y.abs(), a.z.abs());
+                let q = if x >= y && x >= z {
+                    DVec3::new(-a.z / a.x, 0.0, 1.0)
+                } else if y >= z {
+                    DVec3::new(0.0, -a.z / a.y, 1.0)
+                } else {
+                    DVec3::new(1.0, 0.0, -a.x / a.z)
+                };
+                self.descend(gradient, q);
+                self.descend(gradient, a.cross(q));
+            }
+            2 => self.descend(gradient, self.rows[0].cross(self.rows[1])),
+            _ => {}
+        }
+    }
+
+    /// Offers that the derivative along `direction` vanishes.
+    fn descend(&mut self, gradient: &Gradient, direction: DVec3) {
+        self.offer(gradient.times(direction), -direction.dot(gradient.c));
+    }
+
+    fn solve(&self) -> Option<DVec3> {
+        if self.count < 3 {
+            return None;
+        }
+        let [a, b, c] = self.rows;
+        let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
+        let v = (bc * self.values[0] + ca * self.values[1] + ab * self.values[2]) / a.dot(bc);
+        v.is_finite().then_some(v)
+    }
+}
+
+/// What the method makes of a ring, relative to the midpoint of its edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Objective {
+    origin: DVec3,
+    normal_sum: DVec3,
+    volume_sum: f64,
+    volume: Gradient,
+    boundary: Option<Boundary>,
+    shape: Gradient,
+    weights: [f64; 2],
+    order: ConstraintOrder,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Boundary {
+    edge_sum: DVec3,
+    moment_sum: DVec3,
+    area: Gradient,
+}
+
+/// Where the constraints put a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The position in frame units; `None` where the constraints determine none.
+    pub position: Option<DVec3>,
+    /// Constraints accepted after boundary (or volume) preservation, after both, after their optimisation, and after
+    /// the shape of triangles.
+    pub accepted: [usize; 4],
+}
+
+impl Objective {
+    /// The sums over a ring; O(faces).
+    #[must_use]
+    pub fn of(ring: &Ring, options: &MemorylessOptions) -> Self {
+        let origin = ring.midpoint();
+        let mut sums = Self {
+            origin,
+            normal_sum: DVec3::ZERO,
+            volume_sum: 0.0,
+            volume: Gradient::default(),
+            boundary: (!ring.boundary.is_empty()).then(|| Boundary::of(&ring.boundary, origin)),
+            shape: Gradient::default(),
+            weights: [
+                options.volume_weight,
+                (1.0 - options.volume_weight) * ring.length2(),
+            ],
+            order: options.lt_order,
+        };
+        for face in &ring.faces {
+            let (n, l) = (face.normal, face.normal.dot(face.points[0] - origin));
+            sums.normal_sum += n;
+            sums.volume_sum += l;
+            sums.volume.add_outer(1.0, n, n * -l);
+        }
+        let count = ring.spokes.len() as f64;
+        sums.shape.h = [count, 0.0, 0.0, count, 0.0, count];
+        for spoke in &ring.spokes {
+            sums.shape.c -= spoke.point - origin;
+        }
+        sums
+    }
+
+    /// The position that the constraints determine.
+    #[must_use]
+    pub fn place(&self) -> Placement {
+        let mut constraints = Constraints::default();
+        let mut accepted = [0; 4];
+        let keep_volume = |c: &mut Constraints| c.offer(self.normal_sum, self.volume_sum);
+        let keep_boundary = |c: &mut Constraints| {
+            if let Some(boundary) = &self.boundary {
+                let (e, m) = (boundary.edge_sum, boundary.moment_sum);
+                let mut gradient = Gradient::default();
+                gradient.add_cross(1.0, e, e.cross(m));
+                c.minimise(&gradient);
+            }
+        };
+        if self.order == ConstraintOrder::Cgal {
+            keep_boundary(&mut constraints);
+            accepted[0] = constraints.count;
+            keep_volume(&mut constraints);
+        } else {
+            keep_volume(&mut constraints);
+            accepted[0] = constraints.count;
+            keep_boundary(&mut constraints);
+        }
+        accepted[1] = constraints.count;
+        constraints.minimise(&self.optimum());
+        accepted[2] = constraints.count;
+        constraints.minimise(&self.shape);
+        accepted[3] = constraints.count;
+        Placement {
+            position: constraints.solve().map(|v| v + self.origin),
+            accepted,
+        }
+    }
+
+    /// Swept volumes and swept boundary areas as one objective. 9 = (1/2) / (1/18), the ratio of their Hessians.
+    fn optimum(&self) -> Gradient {
+        let [volume, area] = self.weights;
+        let mut both = Gradient::default();
+        for (h, v) in both.h.iter_mut().zip(self.volume.h) {
+            *h = volume * v;
+        }
+        both.c = self.volume.c * volume;
+        if let Some(boundary) = &self.boundary {
+            for (h, b) in both.h.iter_mut().zip(boundary.area.h) {
+                *h += 9.0 * area * b;
+            }
+            both.c += boundary.area.c * (9.0 * area);
+        }
+        both
+    }
+
+    /// Sum of the squared volumes that the faces sweep when the new vertex lies at `position` (length^6).
+    ///
+    /// Summed face by face: the expanded quadratic form loses the small costs of flat areas to cancellation.
+    #[must_use]
+    pub fn volume_error(&self, ring: &Ring, position: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for face in &ring.faces {
+            let six_volumes = face.normal.dot(position - face.points[0]);
+            sum += six_volumes * six_volumes;
+        }
+        sum / 36.0
+    }
+
+    /// Sum of the squared areas that the boundary edges sweep (length^4).
+    #[must_use]
+    pub fn boundary_error(&self, ring: &Ring, position: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for edge in &ring.boundary {
+            let two_areas = (edge.to - edge.from).cross(position - edge.from);
+            sum += two_areas.dot(two_areas);
+        }
+        sum / 4.0
+    }
+
+    /// The edge cost (length^6).
+    #[must_use]
+    pub fn cost(&self, ring: &Ring, position: DVec3) -> f64 {
+        self.weights[0] * self.volume_error(ring, position)
+            + self.weights[1] * self.boundary_error(ring, position)
+    }
+}
+
+impl Boundary {
+    fn of(edges: &[BoundaryEdge], origin: DVec3) -> Self {
+        let mut sums = Self::default();
+        for edge in edges {
+            let (s, t) = (edge.from - origin, edge.to - origin);
+            let (e, m) = (t - s, t.cross(s));
+            sums.edge_sum += e;
+            sums.moment_sum += m;
+            sums.area.add_cross(1.0, e, e.cross(m));
+        }
+        sums
+    }
+}
+
+/// The method.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Memoryless {
+    /// Its options.
+    pub options: MemorylessOptions,
+}
+
+/// Places and prices the collapse of a site; also the placement and second key of the image-driven method.
+///
+/// # Errors
+/// The rule that forbids it.
+pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal, Refusal> {
+    let objective = Objective::of(site.ring, options);
+    let wanted = site.fixed().or_else(|| objective.place().position);
+    let position = match wanted {
+        Some(position) => site.admit(position)?,
+        None => best_of_three(site, &objective)?,
+    };
+    Ok(Proposal {
+        position,
+        image: 0,
+        geometric: objective.cost(site.ring, position.position()),
+    })
+}
+
+/// The cheapest admitted position of midpoint and ends, the earlier on a tie.
+fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Refusal> {
+    let mut best = None;
+    let mut refusal = Refusal::Unplaced;
+    for candidate in [
+        site.ring.midpoint(),
+        site.ring.points[0],
+        site.ring.points[1],
+    ] {
+        match site.admit(candidate) {
+            Ok(admitted) => {
+                let cost = objective.cost(site.ring, admitted.position());
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, admitted));
+                }
+            }
+            Err(reason) => refusal = reason,
+        }
+    }
+    best.map(|(_, admitted)| admitted).ok_or(refusal)
+}
+
+impl Method for Memoryless {
+    type Scratch = ();
+
+    fn scratch(&self) {}
+
+    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+        propose(site, &self.options)
+    }
+}

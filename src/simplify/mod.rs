@@ -1,0 +1,3 @@
+//! The methods of simplification, their options and their outcome.
+
+pub mod memoryless;
