@@ -3,8 +3,8 @@
 mod error;
 mod progress;
 
-pub mod io;
 pub mod collapse;
+pub mod io;
 pub mod mesh;
 pub mod metric;
 pub mod num;

@@ -38,7 +38,7 @@ pub type Visit<'a> = dyn FnMut(usize, usize, u8, u8) + 'a;
 /// Pictures of one mesh in all views of a set, kept up to date.
 pub trait Unrender: Sync {
     /// What one thread needs to evaluate changes.
-    type Scratch: Send;
+    type Scratch: Send + Sync;
 
     /// Room for one thread.
     fn scratch(&self) -> Self::Scratch;

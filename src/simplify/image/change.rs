@@ -1,0 +1,190 @@
+//! From a patch of the mesh to a change of its pictures.
+//!
+//! The pictures number vertices and triangles without gaps, in the order of the mesh's own ids, so that ties of depth
+//! are decided the same way. With Gouraud shading a collapse changes the normals of the whole link, and with them the
+//! look of one more ring of triangles (Lindstrom & Turk 2000, footnote 3).
+
+use glam::DVec3;
+
+use crate::{
+    collapse::{LiveMesh, NONE, Patch},
+    mesh::{Channel, ChannelKind},
+    num::math::unit,
+    raster::{Added, Change, FaceGeometry, Scene},
+};
+
+/// Numbers of the mesh's triangles and vertices in the pictures.
+#[derive(Clone, Debug)]
+pub(super) struct Slots {
+    triangles: Vec<u32>,
+    vertices: Vec<u32>,
+    color: Option<Channel>,
+}
+
+impl Slots {
+    /// Numbers the living triangles and their vertices, and gives the scene that they are.
+    pub(super) fn of(live: &LiveMesh) -> (Self, Scene) {
+        let channels = live.rows().channels();
+        let color = [ChannelKind::Color, ChannelKind::ColorAlpha];
+        let mut slots = Self {
+            triangles: vec![NONE; live.triangle_ids() as usize],
+            vertices: vec![NONE; live.vertex_ids() as usize],
+            color: channels.iter().copied().find(|c| color.contains(&c.kind)),
+        };
+        let (mut positions, mut triangles, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+        for id in 0..live.triangle_ids() {
+            let Some(corners) = live.triangle(id) else {
+                continue;
+            };
+            slots.triangles[id as usize] = triangles.len() as u32;
+            if slots.color.is_some() {
+                colors.push(slots.colors(live, &[], live.wedges(id)));
+            }
+            triangles.push(corners.map(|v| {
+                let slot = &mut slots.vertices[v as usize];
+                if *slot == NONE {
+                    *slot = positions.len() as u32;
+                    positions.push(live.position(v));
+                }
+                *slot
+            }));
+        }
+        let ids = (0..triangles.len() as u32).collect();
+        (
+            slots,
+            Scene::new(positions, triangles, ids).with_colors(colors),
+        )
+    }
+
+    /// Corner colours of a triangle with these wedges; `rows` holds wedges that the mesh does not have yet.
+    fn colors(&self, live: &LiveMesh, rows: &[f64], wedges: [u32; 3]) -> [[f64; 3]; 3] {
+        let Some(channel) = self.color else {
+            return [[1.0; 3]; 3];
+        };
+        wedges.map(|w| {
+            let row = if w < live.wedge_count() {
+                live.rows().row(w)
+            } else {
+                let stride = live.rows().stride();
+                &rows[(w - live.wedge_count()) as usize * stride..][..stride]
+            };
+            let v = &row[channel.offset..];
+            if v[0].is_nan() {
+                [1.0; 3]
+            } else {
+                [v[0], v[1], v[2]]
+            }
+        })
+    }
+}
+
+/// A triangle after the change, at a vertex whose normal may change.
+#[derive(Clone, Copy, Debug)]
+struct ShadedFace {
+    id: u32,
+    corners: [u32; 3],
+    area_normal: DVec3,
+}
+
+/// Buffers that hold a [`Change`].
+#[derive(Clone, Debug, Default)]
+pub struct ImageChange {
+    removed: Vec<u32>,
+    added: Vec<Added>,
+    moved: Vec<(u32, DVec3)>,
+    normals: Vec<(u32, DVec3)>,
+    vertices: Vec<u32>,
+    faces: Vec<ShadedFace>,
+}
+
+impl ImageChange {
+    /// The change, for an un-rendering engine.
+    #[must_use]
+    pub fn as_change(&self) -> Change<'_> {
+        Change {
+            removed: &self.removed,
+            added: &self.added,
+            moved: &self.moved,
+            normals: &self.normals,
+        }
+    }
+
+    /// Translates `patch`; the same before and after `live` has applied it. `gouraud` adds the changed normals and the
+    /// triangles that they touch.
+    pub(super) fn fill(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch, gouraud: bool) {
+        self.removed.clear();
+        self.added.clear();
+        self.moved.clear();
+        self.normals.clear();
+        let triangle = |id: u32| slots.triangles[id as usize];
+        self.removed
+            .extend(patch.removed.iter().map(|face| triangle(face.id)));
+        self.added.extend(patch.added.iter().map(|face| Added {
+            id: triangle(face.id),
+            corners: face.corners.map(|v| slots.vertices[v as usize]),
+            colors: slots.colors(live, &patch.rows, face.wedges),
+        }));
+        self.moved.extend(
+            patch
+                .moved
+                .iter()
+                .map(|m| (slots.vertices[m.vertex as usize], m.to)),
+        );
+        if gouraud {
+            self.shade(slots, live, patch);
+        }
+    }
+
+    fn shade(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch) {
+        // (1) The vertices whose normals can change: all of the removed faces, but for the one that is gone.
+        self.vertices.clear();
+        let corners = patch.removed.iter().flat_map(|face| face.corners);
+        self.vertices
+            .extend(corners.filter(|&v| Some(v) != patch.gone));
+        self.vertices.sort_unstable();
+        self.vertices.dedup();
+        // (2) All faces at them after the change, by ascending id.
+        self.faces.clear();
+        let removed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
+        for face in &patch.added {
+            let points = patch.after(live, face);
+            self.faces.push(ShadedFace {
+                id: face.id,
+                corners: face.corners,
+                area_normal: FaceGeometry::new(points).area_normal,
+            });
+        }
+        let own = self.faces.len();
+        for &v in &self.vertices {
+            for id in live.triangles_at(v).filter(|&id| !removed(id)) {
+                if let (Some(corners), Some(points)) = (live.triangle(id), live.points(id)) {
+                    self.faces.push(ShadedFace {
+                        id,
+                        corners,
+                        area_normal: FaceGeometry::new(points).area_normal,
+                    });
+                }
+            }
+        }
+        // (3) Those that are not part of the patch look different too.
+        self.faces[own..].sort_unstable_by_key(|f| f.id);
+        self.faces.dedup_by_key(|f| f.id);
+        for face in &self.faces[own..] {
+            let id = slots.triangles[face.id as usize];
+            self.removed.push(id);
+            self.added.push(Added {
+                id,
+                corners: face.corners.map(|v| slots.vertices[v as usize]),
+                colors: slots.colors(live, &patch.rows, live.wedges(face.id)),
+            });
+        }
+        // (4) The new normals, summed by ascending id.
+        self.faces.sort_unstable_by_key(|f| f.id);
+        for &v in &self.vertices {
+            let at = self.faces.iter().filter(|f| f.corners.contains(&v));
+            let sum = at.fold(DVec3::ZERO, |sum, f| sum + f.area_normal);
+            let normal = unit(sum).unwrap_or(DVec3::ZERO);
+            self.normals.push((slots.vertices[v as usize], normal));
+        }
+    }
+}
