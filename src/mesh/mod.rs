@@ -5,6 +5,7 @@
 
 mod adjacency;
 mod attributes;
+pub mod generate;
 mod indexed;
 
 pub use adjacency::{Edge, Edges, VertexTriangles};

@@ -4,11 +4,9 @@
 //! section 3.2. Octahedron with every triangle split in four k times, midpoints put back on the sphere (6, 18, 66,
 //! 258, 1026, 4098 = 4^(k+1) + 2): Zhang & Turk 2002. Unit vectors from the scene towards the viewer.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 
-use crate::{mesh::Edge, num::math};
+use crate::{mesh::generate::subdivision, num::math};
 
 /// The golden ratio and its inverse, and 1 + the square root of 2, rounded to nearest.
 const GOLDEN: f64 = 1.618_033_988_749_895;
@@ -86,21 +84,7 @@ pub fn octahedron_faces(k: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         [0, 3, 5],
     ];
     for _ in 0..k.min(OCTAHEDRON_LIMIT) {
-        let mut middles: BTreeMap<Edge, u32> = BTreeMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                let sum = vertices[a as usize] + vertices[b as usize];
-                // No edge joins opposite points, so the sum has a direction.
-                vertices.push(math::unit(sum).unwrap_or(sum));
-                vertices.len() as u32 - 1
-            })
-        };
-        let mut finer = Vec::with_capacity(4 * triangles.len());
-        for [a, b, c] in triangles {
-            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-        }
-        triangles = finer;
+        subdivision::split(&mut vertices, &mut triangles);
     }
     (vertices, triangles)
 }

@@ -3,6 +3,7 @@
 mod architecture;
 mod raster;
 mod unrender;
+mod generate;
 mod view;
 
 /// A property test of so many cases that writes nothing into the source tree when it fails.

@@ -17,6 +17,7 @@ proptest! {
         for (i, x) in matrix.iter_mut().flatten().enumerate() {
             *x = n(i);
         }
+        matrix[0][0] = -0.0;
         let view = View {
             matrix,
             eye: if cull == 0 { Eye::Axis(DVec3::new(0.6, -0.0, 0.8)) } else { Eye::Point(v(16)) },
@@ -34,7 +35,9 @@ proptest! {
             width: size[0], height: size[1], samples, subpixel: SubpixelBits::Sixteen, background, views: vec![view; 2],
         };
         let text = file::to_json(&set, &[]).expect("finite");
-        prop_assert_eq!(file::from_json(&text, "-").expect("our own file"), set.clone());
+        let read = file::from_json(&text, "-").expect("our own file");
+        prop_assert_eq!(&read, &set);
+        prop_assert!(read.views[0].matrix[0][0].is_sign_negative(), "-0 is kept");
         prop_assert_eq!(file::to_json(&file::from_json(&text, "-").expect("again"), &[]).expect("finite"), text);
     }
 

@@ -1,0 +1,96 @@
+//! Generated meshes: the same bits everywhere, for tests, benchmarks, the demo and the self-check.
+//!
+//! Each is rounded to `f32`. The closed ones ([`tetrahedron`], [`cube`], [`icosphere`], [`shells`], [`torus`],
+//! [`interlocking_tori`], [`textured_torus`], [`engine`]) have two triangles at every edge, oriented outward.
+//! Counts beyond what a function's documentation allows are brought into that range.
+
+mod cube;
+mod engine;
+mod grid;
+mod pcg;
+mod probe;
+mod sphere;
+pub(crate) mod subdivision;
+mod torus;
+
+use glam::DVec3;
+
+use super::{Attributes, ChannelKind, Mesh, MeshParts};
+
+pub use cube::cube;
+pub use engine::engine;
+pub use grid::{Height, grid};
+pub use pcg::Pcg32;
+pub use probe::probe;
+pub use sphere::{icosphere, shells, tetrahedron};
+pub use torus::{interlocking_tori, textured_torus, torus};
+
+/// The names that [`by_name`] knows.
+pub const NAMES: &[&str] = &[
+    "tetrahedron",
+    "cube",
+    "icosphere",
+    "torus",
+    "plane",
+    "terrain",
+    "waves",
+    "shells",
+    "tori",
+    "engine",
+    "textured-torus",
+    "probe",
+];
+
+/// The mesh of a name in [`NAMES`], of a size that suits a demonstration; `None` for other names.
+#[must_use]
+pub fn by_name(name: &str) -> Option<Mesh> {
+    Some(match name {
+        "tetrahedron" => tetrahedron(),
+        "cube" => cube(),
+        "icosphere" => icosphere(4),
+        "torus" => torus(1.0, 0.4, 96, 48),
+        "plane" => grid(32, 32, Height::Flat),
+        "terrain" => grid(64, 64, Height::Polynomial),
+        "waves" => grid(64, 64, Height::Waves),
+        "shells" => shells(4, 3),
+        "tori" => interlocking_tori(64, 32),
+        "engine" => engine(2),
+        "textured-torus" => textured_torus(96, 48),
+        "probe" => probe(),
+        _ => return None,
+    })
+}
+
+/// A surface in the making.
+#[derive(Clone, Debug, Default)]
+struct Surface {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Surface {
+    /// Adds a copy of `other` with its positions moved by `place`, which must not mirror.
+    fn add(&mut self, other: &Self, place: impl Fn(DVec3) -> DVec3) {
+        let first = self.positions.len() as u32;
+        self.positions
+            .extend(other.positions.iter().map(|&p| place(p)));
+        let moved = other.triangles.iter().map(|t| t.map(|v| v + first));
+        self.triangles.extend(moved);
+    }
+
+    fn into_mesh(self) -> Mesh {
+        finish(MeshParts {
+            positions: self.positions,
+            triangles: self.triangles,
+            ..MeshParts::default()
+        })
+    }
+}
+
+fn finish(parts: MeshParts) -> Mesh {
+    Mesh::new(parts).expect("a generator names its own vertices and finite lengths only")
+}
+
+fn attributes(kinds: &[ChannelKind], values: Vec<f64>, corners: Vec<[u32; 3]>) -> Attributes {
+    Attributes::new(kinds, values, corners).expect("a generator names its own wedges only")
+}
