@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Patch, PatchFace, wedge::WedgeRows};
+use super::{Move, Patch, PatchFace, wedge::WedgeRows};
 use crate::{
     mesh::{Attributes, Materials, Mesh, MeshParts},
     num::{Frame, Precision},
@@ -354,14 +354,20 @@ impl LiveMesh {
         }
     }
 
-    /// Takes back the patch committed last. Locks are not restored.
-    ///
-    /// The patch must be the one that [`LiveMesh::apply`] committed last of those not yet taken back.
-    pub fn revert(&mut self, patch: &Patch, changes: &mut Changes) {
+    /// Takes back the patch committed last of those not yet taken back: `removed`, `moved` and the number of values in
+    /// `rows` are that patch's. Faces, positions and wedges are then as before; locks stay as they are.
+    pub fn revert(
+        &mut self,
+        removed: &[PatchFace],
+        moved: Option<Move>,
+        row_values: usize,
+        changes: &mut Changes,
+    ) {
+        let current = removed.iter().filter(|f| self.triangle(f.id).is_some());
         let back = Patch {
-            removed: patch.added.clone(),
-            added: patch.removed.clone(),
-            moved: patch.moved.map(|m| super::Move {
+            removed: current.map(|f| self.patch_face(f.id)).collect(),
+            added: removed.to_vec(),
+            moved: moved.map(|m| Move {
                 vertex: m.vertex,
                 from: m.to,
                 to: m.from,
@@ -369,7 +375,7 @@ impl LiveMesh {
             ..Patch::default()
         };
         self.apply(&back, changes);
-        self.rows.truncate(patch.rows.len());
+        self.rows.truncate(row_values);
     }
 
     /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and

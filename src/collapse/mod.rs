@@ -7,19 +7,23 @@
 
 mod engine;
 mod heap;
+mod history;
 pub mod legality;
 mod live;
 mod method;
 mod patch;
 mod queue;
+mod replay;
 mod ring;
 pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
 pub use heap::{Heap, Key};
+pub use history::{Collapse, Entry, Header, History, Recorder, content_sha256};
 pub use legality::{Refusal, Refusals, Rules, Topology};
 pub use live::{Changes, LiveMesh, NONE};
 pub use method::{Admitted, Method, Proposal, Site};
 pub use patch::{Move, Patch, PatchFace};
 pub use queue::Schedule;
+pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};

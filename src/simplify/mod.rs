@@ -1,4 +1,16 @@
 //! The methods of simplification, their options and their outcome.
+//!
+//! [`simplify`] takes a mesh and [`Options`] and gives an [`Outcome`]: the mesh, the history of its making and why it
+//! ended. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
+//! methods use as well.
 
 pub mod image;
 pub mod memoryless;
+mod options;
+mod outcome;
+pub mod quadric;
+mod run;
+
+pub use options::{Amount, MethodOptions, Options};
+pub use outcome::{Outcome, Stop};
+pub use run::{frame_of, simplify};

@@ -1,0 +1,128 @@
+//! What to do, resolved: the same options and input give the same bytes.
+
+use serde::{Deserialize, Serialize};
+
+use super::{memoryless::MemorylessOptions, quadric::QuadricOptions};
+use crate::{
+    Error, Result,
+    collapse::{Rules, Schedule},
+};
+
+/// How far to simplify.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Amount {
+    /// To at most this many triangles, at least 1.
+    Triangles(u64),
+    /// To at most this share of the input's triangles, in (0, 1].
+    Ratio(f64),
+}
+
+impl Amount {
+    /// The number of triangles to reach from `input` triangles.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for no triangles or a ratio outside (0, 1].
+    pub fn triangles(self, input: usize) -> Result<usize> {
+        match self {
+            Self::Triangles(0) => Err(Error::Usage(
+                "0 triangles make no mesh; expected at least 1".into(),
+            )),
+            Self::Triangles(n) => Ok(usize::try_from(n).unwrap_or(usize::MAX)),
+            Self::Ratio(r) if r > 0.0 && r <= 1.0 => {
+                // Rounded up, and never 0: a ratio of a small mesh leaves something.
+                Ok(((r * input as f64).ceil() as usize).max(1))
+            }
+            Self::Ratio(r) => Err(Error::Usage(format!(
+                "the ratio {r} is not in (0, 1]; expected for example 0.1"
+            ))),
+        }
+    }
+}
+
+/// Which method, with its options.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "name")]
+pub enum MethodOptions {
+    /// Lindstrom & Turk 1998/99.
+    Memoryless(MemorylessOptions),
+    /// Garland & Heckbert 1997/98.
+    Quadric(QuadricOptions),
+}
+
+impl MethodOptions {
+    /// The method's name on the command line and in reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Memoryless(_) => "memoryless",
+            Self::Quadric(_) => "quadric",
+        }
+    }
+}
+
+/// Everything a result depends on besides the input.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// The method.
+    pub method: MethodOptions,
+    /// When to stop.
+    pub target: Amount,
+    /// What a collapse may do.
+    pub rules: Rules,
+    /// When edges are evaluated again.
+    pub schedule: Schedule,
+}
+
+impl Options {
+    /// The method with its defaults, down to `target`.
+    #[must_use]
+    pub fn memoryless(target: Amount) -> Self {
+        Self {
+            method: MethodOptions::Memoryless(MemorylessOptions::default()),
+            target,
+            rules: Rules::default(),
+            schedule: Schedule::default(),
+        }
+    }
+
+    /// Quadric error metrics with their defaults, down to `target`.
+    #[must_use]
+    pub fn quadric(target: Amount) -> Self {
+        Self {
+            method: MethodOptions::Quadric(QuadricOptions::default()),
+            ..Self::memoryless(target)
+        }
+    }
+
+    /// Tests every option that has a range.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] that names the option, its value and the range.
+    pub fn check(&self) -> Result<()> {
+        let within = |name: &str, value: f64, low: f64, high: f64| {
+            if value >= low && value <= high {
+                Ok(())
+            } else {
+                Err(Error::Usage(format!(
+                    "{name} is {value}; expected a number from {low} to {high}"
+                )))
+            }
+        };
+        self.target.triangles(1)?;
+        within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
+        match &self.method {
+            MethodOptions::Memoryless(m) => within("volume-weight", m.volume_weight, 0.0, 1.0),
+            MethodOptions::Quadric(q) => {
+                within("boundary-weight", q.boundary_weight, 0.0, 1e12)?;
+                match q.uncertainty {
+                    Some(u) => {
+                        within("normal uncertainty", u.normal, 0.0, 1.0)?;
+                        within("position uncertainty", u.position, 0.0, 1e6)
+                    }
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
