@@ -3,6 +3,7 @@
 mod error;
 mod progress;
 
+pub mod io;
 pub mod mesh;
 pub mod num;
 pub mod raster;
