@@ -42,6 +42,9 @@ mod tests {
     use super::*;
 
     proptest! {
+        // Tests write only below target/.
+        #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+
         #[test]
         fn a_decimal_reads_back_to_the_same_bits(bits: u64) {
             let (wide, narrow) = (f64::from_bits(bits), f32::from_bits(bits as u32));

@@ -54,6 +54,15 @@ struct Parsed {
 }
 
 fn parse(scan: &Scan) -> Result<Parsed, String> {
+    if scan.counts[0] == 0 {
+        // No face can name a vertex, and no polygon can be put before the faces.
+        return Ok(Parsed {
+            positions: Vec::new(),
+            texcoords: Vec::new(),
+            normals: Vec::new(),
+            corners: Vec::new(),
+        });
+    }
     let [v, vt, vn] = [scan.counts[0], scan.counts[1] + 1, scan.counts[2] + 1];
     let corners = v.max(vt).max(vn).max(3);
     let mut polygon = b"f".to_vec();

@@ -352,7 +352,8 @@ impl Scanner {
                 ));
             }
         }
-        if self.counts[0] == 0 {
+        // Our own writer's comment is enough: a mesh without vertices can be read back.
+        if self.counts[0] == 0 && self.precision.is_none() {
             return Err("no line begins with `v`; expected an OBJ mesh with vertices".into());
         }
         if !self.colors.is_empty() {

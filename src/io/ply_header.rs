@@ -133,7 +133,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
                     "binary_little_endian" => Storage::LittleEndian,
                     "binary_big_endian" => Storage::BigEndian,
                     _ => {
-                        return wrong("the format ascii, binary_little_endian or binary_big_endian");
+                        return wrong(
+                            "the format ascii, binary_little_endian or binary_big_endian",
+                        );
                     }
                 };
                 if version != "1.0" {

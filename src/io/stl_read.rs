@@ -43,14 +43,19 @@ pub(super) fn is_ascii(bytes: &[u8]) -> bool {
 
 pub(super) fn read(bytes: &[u8]) -> Result<Loaded, String> {
     let starts_solid = Words::new(bytes).next_is("solid");
-    if is_binary(bytes) || (!starts_solid && bytes.len() >= HEADER) {
+    // A name, colours or nothing fill the header of a binary file, then follows the count: seldom all in letters.
+    let is_text = bytes
+        .iter()
+        .take(HEADER)
+        .all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace());
+    if is_binary(bytes) || (!starts_solid && !is_text && bytes.len() >= HEADER) {
         binary(bytes)
     } else if starts_solid {
         text(bytes)
     } else {
         Err(format!(
-            "neither the text `solid` at the start nor the {HEADER} bytes that a binary STL begins with; the file has \
-             {} bytes",
+            "neither the text `solid` at the start nor a binary STL, whose length follows from the count at byte 80; \
+             the file has {} bytes",
             bytes.len()
         ))
     }

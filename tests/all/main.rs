@@ -1,3 +1,6 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod hostile;
+mod io;
+mod mesh;
