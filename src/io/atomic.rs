@@ -1,37 +1,90 @@
-//! Writing a file as a whole or not at all.
+//! Whole files or none: what is written appears under its name only when it is complete.
 
 use std::{
-    ffi::OsString,
-    fs::{self, File},
-    io::{BufWriter, Write},
-    path::Path,
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
 };
 
 use crate::{Error, Result};
 
-/// Writes `path` through a temporary file in the same folder that replaces it once it is complete; on failure the
-/// temporary file is removed and an existing `path` stays as it was.
+/// Writes a file: `content` goes to a temporary file in the same folder, which then replaces `path` in one step. Where
+/// anything fails, `path` is as it was and the temporary file is gone. An existing file keeps its permissions, a link
+/// keeps pointing to the (new) content, and a device or pipe is written to directly.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Usage`] where `path` names no file.
-pub fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let name = path
-        .file_name()
-        .ok_or_else(|| Error::Usage(format!("{} names no file to write", path.display())))?;
-    let mut temporary_name = OsString::from(".");
-    temporary_name.push(name);
-    temporary_name.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(temporary_name);
-    let written = File::create(&temporary).and_then(|file| {
-        let mut buffered = BufWriter::new(file);
-        write(&mut buffered)?;
-        buffered.into_inner()?.sync_all()
-    });
-    written
-        .and_then(|()| fs::rename(&temporary, path))
-        .map_err(|source| {
-            // Nothing to do where this fails too: the first failure is the one to tell.
-            let _ = fs::remove_file(&temporary);
-            Error::io("write", path, source)
+/// [`Error::Io`] where the folder or file cannot be written, or `content` says so.
+pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let failed = |source| Error::io("write", path, source);
+    // Replacing a link would leave its target behind with the old content.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let existing = fs::metadata(&target).ok();
+    if let Some(found) = &existing {
+        if found.is_dir() {
+            return Err(failed(io::Error::other(
+                "it is a folder; expected the name of a file in it",
+            )));
+        }
+        if !found.is_file() {
+            return File::create(&target)
+                .and_then(|mut device| fill(&mut device, content))
+                .map_err(failed);
+        }
+        if found.permissions().readonly() {
+            return Err(failed(io::Error::new(
+                io::ErrorKind::PermissionDenied,
+                "the existing file is read-only; make it writable or choose another name",
+            )));
+        }
+    }
+    let (mut file, temporary) = Temporary::beside(&target).map_err(failed)?;
+    fill(&mut file, content)
+        .and_then(|()| file.sync_all())
+        .and_then(|()| match existing {
+            Some(found) => file.set_permissions(found.permissions()),
+            None => Ok(()),
         })
+        .map_err(failed)?;
+    // Some systems refuse to rename an open file.
+    drop(file);
+    fs::rename(&temporary.0, &target).map_err(failed)
+}
+
+fn fill(file: &mut File, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut buffered = BufWriter::with_capacity(1 << 16, file);
+    content(&mut buffered)?;
+    buffered.flush()
+}
+
+/// A file that is removed on every way out; after the renaming there is nothing left to remove.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    /// Creates one in the folder of `target`, under a name nobody uses.
+    fn beside(target: &Path) -> io::Result<(File, Self)> {
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        if target.file_name().is_none() {
+            return Err(io::Error::other("it does not end in the name of a file"));
+        }
+        for attempt in 0..1000 {
+            let name = folder.join(format!(".lodmark-{}-{attempt}.tmp", std::process::id()));
+            match OpenOptions::new().write(true).create_new(true).open(&name) {
+                Ok(file) => return Ok((file, Self(name))),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Err(io::Error::other(
+            "the folder holds 1000 abandoned temporary files .lodmark-*.tmp; remove them",
+        ))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
 }

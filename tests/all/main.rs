@@ -1,9 +1,14 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod generate;
+mod hostile;
+mod io;
+mod mesh;
+mod metric;
+mod metric_surface;
 mod raster;
 mod unrender;
-mod generate;
 mod view;
 
 /// A property test of so many cases that writes nothing into the source tree when it fails.
@@ -13,5 +18,3 @@ fn cases(count: u32) -> proptest::test_runner::Config {
         ..proptest::test_runner::Config::with_cases(count)
     }
 }
-mod metric;
-mod metric_surface;

@@ -1,0 +1,534 @@
+//! Meshes: welding, canonical order, digests and findings, against brute force.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use lodmark::{
+    io,
+    mesh::{
+        Attributes, ChannelKind, Findings, Materials, Mesh, MeshParts, canonical, content_sha256,
+        weld,
+    },
+    num::Precision,
+};
+use proptest::prelude::*;
+
+fn mesh(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Mesh {
+    Mesh::from_triangles(
+        positions.iter().map(|&p| DVec3::from(p)).collect(),
+        triangles.to_vec(),
+    )
+    .expect("valid")
+}
+
+const TETRAHEDRON: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+#[test]
+fn zeros_of_either_sign_weld_and_neighbours_in_the_last_bit_do_not() {
+    let next = f64::from(1.0_f32.next_up());
+    let welded = weld(mesh(
+        &[
+            [0.0, 1.0, 0.0],
+            [-0.0, 1.0, 0.0],
+            [0.0, next, 0.0],
+            [0.0, 1.0, -0.0],
+        ],
+        &[[0, 1, 2], [3, 2, 1]],
+    ));
+    assert_eq!(welded.merged, 2);
+    assert_eq!(welded.mesh.positions().len(), 2);
+    assert!(
+        welded.mesh.positions()[0].x.is_sign_positive(),
+        "the first stays"
+    );
+    assert_eq!(welded.mesh.triangles(), [[0, 0, 1], [0, 1, 0]]);
+}
+
+#[test]
+fn degenerate_triangles_go_and_flat_ones_stay_in_canonical_order() {
+    let done = canonical(&mesh(
+        &[
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [7.0; 3],
+            [8.0; 3],
+        ],
+        &[[2, 0, 1], [0, 0, 1], [3, 3, 3]],
+    ));
+    assert_eq!((done.degenerate, done.unreferenced), (2, 2));
+    assert_eq!(done.mesh.triangles(), [[0, 1, 2]]);
+    assert_eq!(canonical(&Mesh::default()).mesh, Mesh::default());
+}
+
+#[test]
+fn the_morton_curve_visits_the_corners_of_a_cube_in_binary_order() {
+    let cube: Vec<[f64; 3]> = (0..8_u8)
+        .rev()
+        .map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from))
+        .collect();
+    let done = canonical(&mesh(&cube, &[[0, 1, 2], [3, 4, 5], [6, 7, 0]]));
+    let expected: Vec<DVec3> = cube.iter().rev().map(|&p| DVec3::from(p)).collect();
+    assert_eq!(done.mesh.positions(), expected);
+}
+
+#[test]
+fn an_orientation_survives_the_canonical_order() {
+    let volume = |m: &Mesh| -> f64 {
+        (0..m.triangles().len())
+            .map(|t| {
+                let [a, b, c] = m.corners(t);
+                a.dot(b.cross(c))
+            })
+            .sum()
+    };
+    let before = mesh(&TETRAHEDRON, &FACES);
+    let after = canonical(&before).mesh;
+    assert_eq!(volume(&before), 1.0);
+    assert_eq!(volume(&after), 1.0);
+}
+
+#[test]
+fn the_extent_of_the_largest_coordinates_does_not_overflow() {
+    let huge = Mesh::new(MeshParts {
+        positions: vec![DVec3::splat(-f64::MAX), DVec3::splat(f64::MAX), DVec3::ZERO],
+        triangles: vec![[1, 0, 2]],
+        precision: Precision::F64,
+        ..MeshParts::default()
+    })
+    .expect("valid");
+    let done = canonical(&huge).mesh;
+    assert_eq!(
+        done.positions(),
+        [DVec3::splat(-f64::MAX), DVec3::ZERO, DVec3::splat(f64::MAX)]
+    );
+    assert_eq!(Findings::of(&huge).zero_area_triangles.count, 1);
+}
+
+#[test]
+fn a_digest_changes_with_every_part_and_is_pinned() {
+    let base = mesh(&TETRAHEDRON, &FACES);
+    let empty = content_sha256(&Mesh::default());
+    // SHA-256 of the text, then 32 as u64, then 8 lengths of zero: computed with another program.
+    assert_eq!(empty, EMPTY_DIGEST);
+    let digest = content_sha256(&base);
+    let mut seen = vec![empty, digest];
+    let changes: [fn(&mut MeshParts); 8] = [
+        |p| p.positions[0].x = -0.0,
+        |p| p.triangles.swap(0, 1),
+        |p| p.triangles[0].rotate_left(1),
+        |p| p.precision = Precision::F64,
+        |p| p.materials.libraries.push("a".into()),
+        |p| p.materials.names.push("a".into()),
+        |p| {
+            p.attributes =
+                Attributes::new(&[ChannelKind::TexCoord(0)], vec![0.0; 6], vec![[0; 3]; 4])
+                    .expect("fits")
+        },
+        |p| {
+            p.attributes =
+                Attributes::new(&[ChannelKind::TexCoord(1)], vec![0.0; 6], vec![[0; 3]; 4])
+                    .expect("fits")
+        },
+    ];
+    for change in changes {
+        let mut parts = base.clone().into_parts();
+        change(&mut parts);
+        seen.push(content_sha256(&Mesh::new(parts).expect("valid")));
+    }
+    let count = seen.len();
+    seen.sort();
+    seen.dedup();
+    assert_eq!(seen.len(), count);
+    assert!(seen.iter().all(|d| d.len() == 64));
+}
+
+const EMPTY_DIGEST: &str = "8099889b33edd09f728f46221e57faa7e52f564622347092e8a76f1f5aa6ca15";
+
+#[test]
+fn a_closed_tetrahedron_is_clean() {
+    let found = Findings::of(&mesh(&TETRAHEDRON, &FACES));
+    assert!(found.is_clean(), "{}", found.report());
+    assert_eq!(
+        (
+            found.edges,
+            found.components,
+            found.boundary_edges,
+            found.boundary_loops
+        ),
+        (6, 1, 0, 0)
+    );
+    assert!((found.area - (1.5 + 0.75_f64.sqrt_by_newton())).abs() < 1e-12);
+    assert!(found.report().ends_with("clean\n"));
+}
+
+trait Newton {
+    fn sqrt_by_newton(self) -> f64;
+}
+
+impl Newton for f64 {
+    fn sqrt_by_newton(self) -> f64 {
+        let mut root = 1.0;
+        for _ in 0..60 {
+            root = 0.5 * (root + self / root);
+        }
+        root
+    }
+}
+
+#[test]
+fn every_problem_is_found_with_its_place() {
+    let mut positions = TETRAHEDRON.to_vec();
+    positions.extend([
+        [5.0, 0.0, 0.0],
+        [6.0, 0.0, 0.0],
+        [5.0, 1.0, 0.0],
+        [0.0; 3],
+        [0.5, 0.0, 0.0],
+        [9.0; 3],
+    ]);
+    let mut triangles = FACES.to_vec();
+    triangles.extend([
+        [4, 5, 5], // 4: repeats a vertex
+        [0, 8, 1], // 5: no area; a third triangle at 0-1
+        [2, 1, 0], // 6: a copy of 0, turned round
+        [3, 4, 6], // 7: meets the tetrahedron in a vertex only
+    ]);
+    let found = Findings::of(&mesh(&positions, &triangles));
+    assert!(!found.is_clean());
+    assert_eq!(found.degenerate_triangles.examples, [[4]]);
+    assert_eq!(found.zero_area_triangles.examples, [[5]]);
+    assert_eq!(found.duplicate_triangles.examples, [[6]]);
+    assert_eq!(found.non_manifold_edges.examples, [[0, 1], [0, 2], [1, 2]]);
+    assert_eq!(found.non_manifold_vertices.examples, [[3]]);
+    assert_eq!(found.duplicate_positions.examples, [[7]]);
+    assert_eq!(found.unreferenced_vertices.examples, [[7], [9]]);
+    assert_eq!(found.components, 1, "all hang together by vertices");
+    let report = found.report();
+    assert!(
+        report.contains("problem: 3 edges with more than two triangles: 0-1, 0-2, 1-2\n"),
+        "{report}"
+    );
+    assert!(report.ends_with("not clean\n"));
+    let json = serde_json::to_value(&found).expect("serializes");
+    assert_eq!(json["non_manifold_edges"]["count"], 3);
+}
+
+#[test]
+fn triangles_of_opposite_orientation_are_found() {
+    let found = Findings::of(&mesh(&TETRAHEDRON, &[[0, 1, 2], [0, 1, 3]]));
+    assert_eq!(found.misoriented_edges.examples, [[0, 1]]);
+    let found = Findings::of(&mesh(&TETRAHEDRON, &[[0, 1, 2], [1, 0, 3]]));
+    assert!(found.is_clean());
+    assert_eq!((found.boundary_edges, found.boundary_loops), (4, 1));
+}
+
+#[test]
+fn two_holes_that_touch_in_a_point_are_two_loops() {
+    // Two triangles that share one vertex: two fans, two outlines.
+    let bow = Findings::of(&mesh(
+        &[
+            [0.0; 3],
+            [1.0, 1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+            [-1.0, -1.0, 0.0],
+        ],
+        &[[0, 2, 1], [0, 3, 4]],
+    ));
+    assert_eq!(
+        (bow.boundary_edges, bow.boundary_loops, bow.components),
+        (6, 2, 1)
+    );
+    assert_eq!(bow.non_manifold_vertices.count, 1);
+}
+
+#[test]
+fn examples_end_at_five_and_the_count_does_not() {
+    let found = Findings::of(&mesh(&[[0.0; 3]], &[[0, 0, 0]; 9]));
+    assert_eq!(
+        (
+            found.degenerate_triangles.count,
+            found.degenerate_triangles.examples.len()
+        ),
+        (9, 5)
+    );
+    assert_eq!(found.duplicate_triangles.count, 0);
+    assert!(!Findings::of(&Mesh::default()).is_clean());
+}
+
+/// A small mesh with attributes and materials; vertices at different places.
+#[derive(Clone, Debug)]
+struct Soup {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Values of every corner.
+    uvs: Vec<[[f64; 2]; 3]>,
+    materials: Vec<Option<&'static str>>,
+}
+
+impl Soup {
+    fn mesh(&self, reversed_names: bool) -> Mesh {
+        let mut names = vec!["a".to_string(), "b".to_string(), "unused".to_string()];
+        if reversed_names {
+            names.reverse();
+        }
+        let of_triangle = self
+            .materials
+            .iter()
+            .map(|m| {
+                m.map_or(Materials::NONE, |m| {
+                    names.iter().position(|n| n == m).expect("one of them") as u32
+                })
+            })
+            .collect();
+        let corners = (0..self.triangles.len() as u32)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect();
+        let values = self.uvs.iter().flatten().flatten().copied().collect();
+        Mesh::new(MeshParts {
+            positions: self.positions.clone(),
+            triangles: self.triangles.clone(),
+            attributes: Attributes::new(&[ChannelKind::TexCoord(0)], values, corners)
+                .expect("fits"),
+            materials: Materials {
+                names,
+                of_triangle,
+                libraries: Vec::new(),
+            },
+            precision: Precision::F32,
+        })
+        .expect("valid")
+    }
+}
+
+fn soups() -> impl Strategy<Value = Soup> {
+    (3_usize..9, 1_usize..14).prop_flat_map(|(vertices, triangles)| {
+        let index = 0..vertices as u32;
+        let value = prop::sample::select(vec![0.0, -0.0, 0.5, f64::NAN]);
+        let corner = [value.clone(), value];
+        (
+            prop::collection::btree_set([-3_i8..3, -3_i8..3, -3_i8..3], vertices),
+            prop::collection::vec([index.clone(), index.clone(), index], triangles),
+            prop::collection::vec([corner.clone(), corner.clone(), corner], triangles),
+            prop::collection::vec(
+                prop::option::of(prop::sample::select(vec!["a", "b"])),
+                triangles,
+            ),
+        )
+            .prop_map(|(places, triangles, uvs, materials)| Soup {
+                positions: places
+                    .into_iter()
+                    .map(|p| DVec3::from(p.map(|x| f64::from(x) * 0.1)))
+                    .collect(),
+                triangles,
+                uvs,
+                materials,
+            })
+    })
+}
+
+/// The same surface in another order, decided by `keys`.
+fn shuffled(soup: &Soup, keys: &[u32]) -> Soup {
+    let key = |i: usize| keys[i % keys.len()].rotate_left(i as u32);
+    let mut order: Vec<usize> = (0..soup.positions.len()).collect();
+    order.sort_by_key(|&i| key(i));
+    let mut renumbered = vec![0; order.len()];
+    for (new, &old) in order.iter().enumerate() {
+        renumbered[old] = new as u32;
+    }
+    let mut faces: Vec<usize> = (0..soup.triangles.len()).collect();
+    faces.sort_by_key(|&i| key(i + 7));
+    let turned = |t: usize| key(t + 13) as usize % 3;
+    Soup {
+        positions: order.iter().map(|&i| soup.positions[i]).collect(),
+        triangles: faces
+            .iter()
+            .map(|&t| {
+                let mut corners = soup.triangles[t].map(|v| renumbered[v as usize]);
+                corners.rotate_left(turned(t));
+                corners
+            })
+            .collect(),
+        uvs: faces
+            .iter()
+            .map(|&t| {
+                let mut corners = soup.uvs[t];
+                corners.rotate_left(turned(t));
+                corners
+            })
+            .collect(),
+        materials: faces.iter().map(|&t| soup.materials[t]).collect(),
+    }
+}
+
+/// Every triangle as the places, attribute bits and material of its corners, smallest rotation, sorted.
+type Corner = ([u64; 3], [u64; 2]);
+fn surface(mesh: &Mesh) -> Vec<([Corner; 3], Option<String>)> {
+    let attributes = mesh.attributes();
+    let mut all: Vec<_> = (0..mesh.triangles().len())
+        .filter(|&t| {
+            let [a, b, c] = mesh.triangles()[t];
+            a != b && b != c && c != a
+        })
+        .map(|t| {
+            let corner = |i: usize| {
+                let place = mesh.corners(t)[i].to_array().map(f64::to_bits);
+                let row = attributes.row(attributes.corners()[t][i]);
+                (place, [row[0].to_bits(), row[1].to_bits()])
+            };
+            let mut corners = [corner(0), corner(1), corner(2)];
+            let smallest = (0..3).min_by_key(|&i| corners[i]).expect("three");
+            corners.rotate_left(smallest);
+            (
+                corners,
+                mesh.materials()
+                    .names
+                    .get(mesh.materials().of(t) as usize)
+                    .cloned(),
+            )
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn shuffled_meshes_have_one_canonical_form(
+        soup in soups(),
+        keys in prop::collection::vec(any::<u32>(), 1..30),
+        reversed: bool,
+    ) {
+        let one = canonical(&soup.mesh(false));
+        let other = canonical(&shuffled(&soup, &keys).mesh(reversed));
+        prop_assert_eq!(content_sha256(&one.mesh), content_sha256(&other.mesh));
+        prop_assert_eq!((one.degenerate, one.unreferenced), (other.degenerate, other.unreferenced));
+        let again = canonical(&one.mesh);
+        prop_assert_eq!(content_sha256(&again.mesh), content_sha256(&one.mesh), "twice is once");
+        prop_assert_eq!(surface(&one.mesh), surface(&soup.mesh(false)), "the same surface");
+        for t in one.mesh.triangles().windows(2) {
+            prop_assert!(t[0] <= t[1]);
+        }
+        let rows: Vec<(u32, Vec<u64>)> = one.mesh.triangles().as_flattened().iter()
+            .zip(one.mesh.attributes().corners().as_flattened())
+            .map(|(&v, &w)| (v, one.mesh.attributes().row(w).iter().map(|x| x.to_bits()).collect()))
+            .collect();
+        let mut different = rows.clone();
+        different.sort();
+        different.dedup();
+        prop_assert_eq!(different.len(), one.mesh.attributes().wedge_count(), "no wedge twice, none unused");
+    }
+
+    #[test]
+    fn welding_merges_what_is_equal_and_nothing_else(
+        places in prop::collection::vec([-1_i8..2, -1_i8..2, -1_i8..2], 1..20),
+        negative in prop::collection::vec(any::<bool>(), 20),
+        corners in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 0..20),
+    ) {
+        let positions: Vec<DVec3> = places
+            .iter()
+            .zip(&negative)
+            .map(|(p, &n)| DVec3::from(p.map(|x| if x == 0 && n { -0.0 } else { f64::from(x) })))
+            .collect();
+        let triangles: Vec<[u32; 3]> = corners.iter().map(|c| [0, 1, 2].map(|i| c[i].index(places.len()) as u32)).collect();
+        let before = Mesh::from_triangles(positions.clone(), triangles).expect("valid");
+        let after = weld(before.clone());
+        let firsts: Vec<DVec3> = (0..positions.len())
+            .filter(|&i| !(0..i).any(|j| positions[j] == positions[i]))
+            .map(|i| positions[i])
+            .collect();
+        prop_assert_eq!(after.merged, positions.len() - firsts.len());
+        let bits = |all: &[DVec3]| -> Vec<[u64; 3]> { all.iter().map(|p| p.to_array().map(f64::to_bits)).collect() };
+        prop_assert_eq!(bits(after.mesh.positions()), bits(&firsts));
+        for t in 0..before.triangles().len() {
+            prop_assert_eq!(before.corners(t), after.mesh.corners(t));
+        }
+        prop_assert_eq!(Findings::of(&before).duplicate_positions.count, after.merged);
+    }
+
+    #[test]
+    fn findings_agree_with_counting_by_hand(soup in soups()) {
+        let mesh = soup.mesh(false);
+        let found = Findings::of(&mesh);
+        let whole: Vec<[u32; 3]> = mesh.triangles().to_vec();
+        let has = |t: &[u32; 3], u, v| u != v && t.contains(&u) && t.contains(&v);
+        let n = mesh.positions().len() as u32;
+        let (mut boundary, mut crowded, mut edges) = (0, 0, 0);
+        for u in 0..n {
+            for v in u + 1..n {
+                let count = whole.iter().filter(|t| has(t, u, v)).count();
+                edges += usize::from(count > 0);
+                boundary += usize::from(count == 1);
+                crowded += usize::from(count > 2);
+            }
+        }
+        prop_assert_eq!((found.edges, found.boundary_edges, found.non_manifold_edges.count), (edges, boundary, crowded));
+        let free = (0..n).filter(|v| !whole.iter().any(|t| t.contains(v))).count();
+        prop_assert_eq!(found.unreferenced_vertices.count, free);
+        // Components by flooding.
+        let mut label: Vec<usize> = (0..whole.len()).collect();
+        for _ in 0..whole.len() {
+            for a in 0..whole.len() {
+                for b in 0..whole.len() {
+                    if whole[a].iter().any(|v| whole[b].contains(v)) {
+                        label[a] = label[a].min(label[b]);
+                    }
+                }
+            }
+        }
+        label.sort_unstable();
+        label.dedup();
+        prop_assert_eq!(found.components, label.len());
+        // Fans by flooding.
+        let mut pinched = 0;
+        for v in 0..n {
+            let here: Vec<&[u32; 3]> = whole.iter().filter(|t| t.contains(&v) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]).collect();
+            let mut label: Vec<usize> = (0..here.len()).collect();
+            for _ in 0..here.len() {
+                for a in 0..here.len() {
+                    for b in 0..here.len() {
+                        if here[a].iter().any(|&w| w != v && here[b].contains(&w)) {
+                            label[a] = label[a].min(label[b]);
+                        }
+                    }
+                }
+            }
+            label.sort_unstable();
+            label.dedup();
+            pinched += usize::from(label.len() > 1);
+        }
+        prop_assert_eq!(found.non_manifold_vertices.count, pinched);
+    }
+}
+
+#[test]
+fn real_models_have_their_published_boundaries() {
+    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
+        PathBuf::from,
+    );
+    let path = folder.join("bunny.ply");
+    if !path.exists() {
+        #[expect(clippy::print_stderr, reason = "the reason for skipping")]
+        {
+            eprintln!("skipped: {} is not there", path.display());
+        }
+        return;
+    }
+    let bunny = io::read(&path).expect("a good file").mesh;
+    let found = Findings::of(&bunny);
+    assert_eq!(
+        (found.boundary_edges, found.boundary_loops),
+        (223, 5),
+        "{}",
+        found.report()
+    );
+    let done = canonical(&bunny);
+    let after = Findings::of(&done.mesh);
+    assert_eq!((after.boundary_edges, after.boundary_loops), (223, 5));
+    assert_eq!(after.edges, found.edges);
+}
