@@ -1,7 +1,7 @@
 //! An object whose complexity nobody sees: a smooth closed casing around a crowded interior.
 //!
 //! What the models "motor" and "blade" are to the papers (hidden interior surfaces, V(M) = 0.264 for the motor of
-//! Zhang & Turk 2002): the casing has less than a fifth of the area and of the curvature.
+//! Zhang & Turk 2002): the casing has less than a fifth of the area.
 
 use glam::DVec3;
 

@@ -50,7 +50,7 @@ pub fn probe() -> Mesh {
     scene.into_mesh()
 }
 
-/// A fan of triangles around one vertex, 600 to 1,100 times as long as wide.
+/// A fan of triangles around one vertex, 700 to 1,100 times as long as wide.
 fn slivers(scene: &mut Surface) {
     let hub = scene.positions.len() as u32;
     scene.positions.push(DVec3::new(-1.2, -0.8, 0.4));
