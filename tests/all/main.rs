@@ -3,3 +3,4 @@
 mod architecture;
 mod metric;
 mod metric_surface;
+mod output;

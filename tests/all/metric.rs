@@ -270,7 +270,9 @@ proptest! {
         for (edge, at_edge) in Edges::of(&mesh).iter() {
             if front(at_edge[0]) != front(at_edge[1]) {
                 count += 1;
-                edge.map(|v| degree[v as usize] += 1);
+                for v in edge {
+                    degree[v as usize] += 1;
+                }
             }
         }
         prop_assert_eq!(expected.counts()[1], count);
