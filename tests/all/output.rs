@@ -105,6 +105,30 @@ proptest! {
     }
 
     #[test]
+    fn a_damaged_array_is_an_error_and_never_a_panic(
+        levels in grey(),
+        damage in prop::collection::vec((0_usize..140, any::<u8>()), 1..5),
+        cut in 0_usize..160,
+    ) {
+        let folder = folder();
+        let path = folder.path().join("a.npy");
+        npy::write_plane(&path, &levels).expect("written");
+        let mut bytes = fs::read(&path).expect("read");
+        for (at, value) in damage {
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte = value;
+            }
+        }
+        for bytes in [&bytes[..], &bytes[..cut.min(bytes.len())]] {
+            let path = file_with(&folder, "b.npy", bytes);
+            if let Err(e) = npy::read_plane::<u8>(&path) {
+                prop_assert_eq!(e.exit_code(), 3);
+            }
+            let _ = npy::read_rows::<u8>(&path);
+        }
+    }
+
+    #[test]
     fn a_hash_changes_with_every_pixel_and_with_the_shape(
         image in grey(),
         at in any::<prop::sample::Index>(),
