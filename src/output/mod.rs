@@ -1,1 +1,11 @@
-//! Results as files.
+//! Results as files: pictures, arrays, reports, and hashes of pixels.
+//!
+//! Every file is written as a whole or not at all ([`crate::io::atomic`]), and equal results give equal bytes. Pictures
+//! are compared by the hash of their pixels ([`hash`]), never by that of a PNG file, which depends on the encoder.
+
+mod font;
+pub mod hash;
+pub mod npy;
+pub mod png;
+pub mod report;
+pub mod sheet;

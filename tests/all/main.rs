@@ -7,6 +7,7 @@ mod io;
 mod mesh;
 mod metric;
 mod metric_surface;
+mod output;
 mod raster;
 mod unrender;
 mod view;
