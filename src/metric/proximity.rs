@@ -172,6 +172,13 @@ mod tests {
         prop::collection::vec(prop::array::uniform3(point), 1..120)
     }
 
+    /// Coordinates a few units in the last place apart: closest points are rounded across the sides of the box.
+    fn crowded() -> impl Strategy<Value = DVec3> {
+        let coordinate = (-2_i32..=2, -8_i32..=8)
+            .prop_map(|(x, ulps)| f64::from(x) * 0.1 + f64::from(ulps) * f64::EPSILON / 16.0);
+        prop::array::uniform3(coordinate).prop_map(DVec3::from_array)
+    }
+
     proptest! {
         #[test]
         fn the_tree_finds_the_very_minimum_over_all_triangles(
@@ -192,10 +199,29 @@ mod tests {
             p in prop::array::uniform3(-8.0..8.0_f64).prop_map(DVec3::from_array),
         ) {
             for c in corners {
-                let t = Triangle::new(c);
-                let node = Node { low: t.low(), high: t.high(), index: 0, count: 1 };
-                prop_assert!(node.squared_distance(p) <= t.closest(p).1);
+                prop_assert!(box_and_triangle(c, p), "{p} and {c:?}");
             }
         }
+
+        #[test]
+        fn no_box_is_farther_than_what_was_rounded_out_of_it(
+            pairs in prop::collection::vec((prop::array::uniform3(crowded()), crowded()), 200),
+        ) {
+            for (c, p) in pairs {
+                prop_assert!(box_and_triangle(c, p), "{p} and {c:?}");
+            }
+        }
+    }
+
+    /// True where the box is not farther from `p` than the triangle.
+    fn box_and_triangle(corners: [DVec3; 3], p: DVec3) -> bool {
+        let t = Triangle::new(corners);
+        let node = Node {
+            low: t.low(),
+            high: t.high(),
+            index: 0,
+            count: 1,
+        };
+        node.squared_distance(p) <= t.closest(p).1
     }
 }

@@ -75,7 +75,7 @@ proptest! {
     }
 
     #[test]
-    fn a_comparison_tells_where_and_how_much((a, b) in pair()) {
+    fn a_comparison_tells_where_and_how_much((a, b) in pair().prop_map(|(a, b)| (a.map(|v| v % 3), b.map(|v| v % 3)))) {
         let mut differing = Vec::new();
         for y in 0..a.height() {
             for x in 0..a.width() {
@@ -100,6 +100,17 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn of_equally_bad_views_the_first_is_the_worst() {
+    let view = |sum| SquaredError {
+        sum,
+        pixels: 4,
+        samples: 1,
+    };
+    let errors = ViewErrors::new([3, 7, 7, 1].map(view).to_vec()).expect("same samples");
+    assert_eq!(errors.worst(), (1, view(7)));
 }
 
 #[test]

@@ -330,6 +330,21 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
+    fn large_and_small_triangles_count_by_their_area(
+        x in 0.01..0.99_f64,
+        y in 0.01..0.99_f64,
+        samples in 1_u32..3000,
+    ) {
+        let mut positions = square().positions().to_vec();
+        positions.push(DVec3::new(x, y, 0.0));
+        let fan = mesh(positions, vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+        let beside = moved(&square(), |p| p + DVec3::new(3.0, 0.0, 0.0));
+        // The distance is 3 - x everywhere, whatever the triangles are.
+        let found = distance(&fan, &beside, samples);
+        prop_assert!((found.to_candidate.absolute.mean - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
     fn the_largest_vertex_distance_is_that_of_trying_all_triangles(
         a in prop::collection::vec(triangle(), 1..30),
         b in prop::collection::vec(triangle(), 1..30),
