@@ -3,6 +3,8 @@
 mod error;
 mod progress;
 
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod collapse;
 pub mod io;
 pub mod mesh;

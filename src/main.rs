@@ -1,3 +1,7 @@
-//! The `lodmark` command.
+//! The `lodmark` command: see `lodmark --help`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    lodmark::cli::main()
+}

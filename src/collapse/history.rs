@@ -307,15 +307,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// An empty history of a run on `mesh` in `frame` with the given options (JSON).
+    /// An empty history of a run on `mesh` in `frame`.
     #[must_use]
-    pub fn new(mesh: &Mesh, frame: Frame, options: String) -> Self {
+    pub fn new(mesh: &Mesh, frame: Frame) -> Self {
         Self {
             history: History {
                 header: Header {
                     version: env!("CARGO_PKG_VERSION").into(),
                     input: content_sha256(mesh),
-                    options,
+                    options: String::new(),
                     precision: mesh.precision(),
                     frame,
                     stride: mesh.attributes().stride() as u32,
@@ -327,10 +327,12 @@ impl Recorder {
         }
     }
 
-    /// What was recorded.
+    /// What was recorded, with the resolved options of the run (JSON).
     #[must_use]
-    pub fn finish(self) -> History {
-        self.history
+    pub fn finish(self, options: String) -> History {
+        let Self { mut history } = self;
+        history.header.options = options;
+        history
     }
 }
 

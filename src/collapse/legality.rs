@@ -121,6 +121,16 @@ impl Refusals {
     }
 }
 
+impl std::fmt::Display for Refusals {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rules: Vec<String> = self
+            .iter()
+            .map(|(r, count)| format!("{}: {count}", r.name()))
+            .collect();
+        f.write_str(&rules.join(", "))
+    }
+}
+
 impl Serialize for Refusals {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.iter().map(|(r, count)| (r.name(), count)))

@@ -33,7 +33,7 @@ pub struct Changes {
 }
 
 /// A mesh under surgery. Triangle and vertex ids are those of the mesh it was made from, for ever.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LiveMesh {
     frame: Frame,
     precision: Precision,

@@ -63,6 +63,19 @@ impl Format {
     }
 }
 
+impl fmt::Display for Encoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Obj => "OBJ",
+            Self::PlyAscii => "PLY, text",
+            Self::PlyLittleEndian => "PLY, binary little-endian",
+            Self::PlyBigEndian => "PLY, binary big-endian",
+            Self::StlAscii => "STL, text",
+            Self::StlBinary => "STL, binary",
+        })
+    }
+}
+
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -197,16 +210,24 @@ pub fn encode(mesh: &Mesh, encoding: Encoding) -> Result<(Vec<u8>, Vec<String>)>
 /// [`Error::Usage`] for an extension without a format, [`Error::Unsupported`] as [`encode`], [`Error::Io`] as
 /// [`atomic::write`].
 pub fn write(path: &Path, mesh: &Mesh) -> Result<Vec<String>> {
-    let Some(format) = Format::of_extension(path) else {
-        let known = Format::ALL
-            .map(|f| format!(".{}", f.extension()))
-            .join(", ");
-        return Err(Error::Usage(format!(
-            "{}: no known format has this extension; expected one of {known}",
-            path.display()
-        )));
-    };
+    let format = writable_format(path)?;
     let (bytes, notes) = encode(mesh, format.default_encoding())?;
     atomic::write(path, |file| file.write_all(&bytes))?;
     Ok(notes)
+}
+
+/// The format that [`write`](fn@write) would use for `path`: ask before long work, not after it.
+///
+/// # Errors
+/// [`Error::Usage`] for an extension without a format.
+pub fn writable_format(path: &Path) -> Result<Format> {
+    Format::of_extension(path).ok_or_else(|| {
+        let known = Format::ALL
+            .map(|f| format!(".{}", f.extension()))
+            .join(", ");
+        Error::Usage(format!(
+            "{}: no known format has this extension; expected one of {known}",
+            path.display()
+        ))
+    })
 }

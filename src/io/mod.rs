@@ -19,4 +19,4 @@ mod ply_write;
 mod stl_read;
 mod stl_write;
 
-pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, write};
+pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, writable_format, write};

@@ -147,7 +147,7 @@ pub fn keys(scene: &Scene, view: &View, set: &ViewSet) -> Picture<()> {
     draw(scene, view, set, ())
 }
 
-/// Luma at every sample, 0..=255; the set's background where nothing is.
+/// Luma at every sample, 0 to 255; the set's background where nothing is.
 #[must_use]
 pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
     draw(scene, view, set, set.background)
@@ -157,25 +157,6 @@ pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
 #[must_use]
 pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
     draw(scene, view, set, [set.background; 3])
-}
-
-/// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.
-#[must_use]
-pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u16> {
-    let samples = luma(scene, view, set).tones;
-    let mut sums = Plane::filled(set.width, set.height, 0_u16);
-    for (y, row) in samples
-        .values()
-        .chunks_exact(samples.width() as usize)
-        .enumerate()
-    {
-        let start = y / set.samples as usize * set.width as usize;
-        let into = &mut sums.values_mut()[start..start + set.width as usize];
-        for (sum, pixel) in into.iter_mut().zip(row.chunks_exact(set.samples as usize)) {
-            *sum += pixel.iter().map(|&v| u16::from(v)).sum::<u16>();
-        }
-    }
-    sums
 }
 
 /// Triangle ids of a picture: id + 1, and 0 for the background.

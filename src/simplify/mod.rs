@@ -12,5 +12,5 @@ pub mod quadric;
 mod run;
 
 pub use options::{Amount, MethodOptions, Options};
-pub use outcome::{Outcome, Stop};
-pub use run::{frame_of, simplify};
+pub use outcome::{Outcome, Phase, Stop};
+pub use run::simplify;

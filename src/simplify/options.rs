@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{memoryless::MemorylessOptions, quadric::QuadricOptions};
+use super::{image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions};
 use crate::{
     Error, Result,
     collapse::{Rules, Schedule},
@@ -16,6 +16,8 @@ pub enum Amount {
     Triangles(u64),
     /// To at most this share of the input's triangles, in (0, 1].
     Ratio(f64),
+    /// As far as the error limit of [`Options::error_rms`] lets it.
+    ErrorOnly,
 }
 
 impl Amount {
@@ -28,6 +30,7 @@ impl Amount {
             Self::Triangles(0) => Err(Error::Usage(
                 "0 triangles make no mesh; expected at least 1".into(),
             )),
+            Self::ErrorOnly => Ok(1),
             Self::Triangles(n) => Ok(usize::try_from(n).unwrap_or(usize::MAX)),
             Self::Ratio(r) if r > 0.0 && r <= 1.0 => {
                 // Rounded up, and never 0: a ratio of a small mesh leaves something.
@@ -41,9 +44,11 @@ impl Amount {
 }
 
 /// Which method, with its options.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "name")]
 pub enum MethodOptions {
+    /// Lindstrom & Turk 2000.
+    Image(ImageOptions),
     /// Lindstrom & Turk 1998/99.
     Memoryless(MemorylessOptions),
     /// Garland & Heckbert 1997/98.
@@ -55,6 +60,7 @@ impl MethodOptions {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
+            Self::Image(_) => "image",
             Self::Memoryless(_) => "memoryless",
             Self::Quadric(_) => "quadric",
         }
@@ -62,27 +68,46 @@ impl MethodOptions {
 }
 
 /// Everything a result depends on besides the input.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Options {
     /// The method.
     pub method: MethodOptions,
     /// When to stop.
     pub target: Amount,
+    /// Stop before the root mean square of the luma differences over the driving views exceeds this many levels;
+    /// only for methods that look at images.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_rms: Option<f64>,
     /// What a collapse may do.
     pub rules: Rules,
     /// When edges are evaluated again.
     pub schedule: Schedule,
+    /// Measure the true rank of every so many-th collapse among all legal ones; 0 is off. Changes no result.
+    #[serde(default)]
+    pub measure_rank: u64,
 }
 
 impl Options {
-    /// The method with its defaults, down to `target`.
+    /// Image-driven simplification with the published recipe, down to `target`.
+    #[must_use]
+    pub fn image(target: Amount) -> Self {
+        Self {
+            method: MethodOptions::Image(ImageOptions::default()),
+            ..Self::memoryless(target)
+        }
+    }
+
+    /// Memoryless simplification with its defaults, down to `target`.
     #[must_use]
     pub fn memoryless(target: Amount) -> Self {
         Self {
             method: MethodOptions::Memoryless(MemorylessOptions::default()),
             target,
+            error_rms: None,
             rules: Rules::default(),
             schedule: Schedule::default(),
+            measure_rank: 0,
         }
     }
 
@@ -111,7 +136,23 @@ impl Options {
         };
         self.target.triangles(1)?;
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
+        match (self.error_rms, &self.method) {
+            (None, _) if self.target == Amount::ErrorOnly => {
+                return Err(Error::Usage(
+                    "no target; expected a number of triangles, a ratio or an error".into(),
+                ));
+            }
+            (Some(rms), MethodOptions::Image(_)) => within("error-rms", rms, 0.0, 255.0)?,
+            (Some(_), other) => {
+                return Err(Error::Usage(format!(
+                    "the method `{}` cannot honour --error-rms, which is measured on images; use the method `image`",
+                    other.name()
+                )));
+            }
+            (None, _) => {}
+        }
         match &self.method {
+            MethodOptions::Image(image) => image.check(),
             MethodOptions::Memoryless(m) => within("volume-weight", m.volume_weight, 0.0, 1.0),
             MethodOptions::Quadric(q) => {
                 within("boundary-weight", q.boundary_weight, 0.0, 1e12)?;

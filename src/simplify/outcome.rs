@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::Options;
 use crate::{
     collapse::{Counters, History, Refusals},
     mesh::Mesh,
@@ -24,6 +25,19 @@ pub enum Stop {
     TargetAboveInput,
 }
 
+/// One stretch of a run: pre-simplification and the method itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Phase {
+    /// What ordered the collapses.
+    pub method: &'static str,
+    /// Triangles before it.
+    pub triangles_in: usize,
+    /// Triangles after it.
+    pub triangles_out: usize,
+    /// What it did.
+    pub counters: Counters,
+}
+
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -33,6 +47,11 @@ pub struct Outcome {
     pub history: History,
     /// Why the run ended.
     pub stop: Stop,
-    /// What the run did.
-    pub counters: Counters,
+    /// What the run did, in order.
+    pub phases: Vec<Phase>,
+    /// The options as they were used: nothing in them is left to a default.
+    pub options: Options,
+    /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at
+    /// images. Never a measure of quality: the run has minimised it.
+    pub error_rms: Option<f64>,
 }

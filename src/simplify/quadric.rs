@@ -46,6 +46,20 @@ pub struct QuadricOptions {
     pub uncertainty: Option<Uncertainty>,
 }
 
+impl QuadricOptions {
+    /// Probabilistic quadrics with CGAL's usual standard deviation of positions, 0.05 of the mean edge length.
+    #[must_use]
+    pub fn probabilistic() -> Self {
+        Self {
+            uncertainty: Some(Uncertainty {
+                normal: 0.05,
+                position: 0.05,
+            }),
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for QuadricOptions {
     fn default() -> Self {
         Self {

@@ -1,85 +1,158 @@
 //! From a mesh and options to an outcome.
 
 use super::{
-    MethodOptions, Options, Outcome, Stop, memoryless::Memoryless, quadric::QuadricMethod,
+    MethodOptions, Options, Outcome, Phase, Stop,
+    image::{ImageDriven, ImageOptions, Start},
+    memoryless::Memoryless,
+    quadric::QuadricMethod,
 };
 use crate::{
     Error, Progress, Result,
-    collapse::{Counters, End, Engine, LiveMesh, Method, Recorder, Target},
+    collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
-    num::{Frame, math},
+    raster::{BucketEngine, Model, Scene},
+    view::frame_of,
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
 ///
 /// The mesh is taken as it is: weld it and put it in canonical order first. Triangle and vertex ids of the history
-/// are those of `mesh`. O(n log n).
+/// are those of `mesh`. O(n log n) for the geometric methods; the image-driven method also draws: its time grows with
+/// the pixels that the collapses change.
 ///
 /// # Errors
-/// [`Error::Usage`] for options out of range, [`Error::Interrupted`].
+/// [`Error::Usage`] for options out of range, [`Error::Input`] for a view file that cannot be used,
+/// [`Error::Interrupted`].
 pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Outcome> {
     options.check()?;
     let triangles = options.target.triangles(mesh.triangles().len())?;
-    let json = serde_json::to_string(options).map_err(|e| Error::Internal(e.to_string()))?;
-    let frame = frame_of(mesh);
-    let recorder = Recorder::new(mesh, frame, json);
+    let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {
-        return Ok(Outcome {
-            mesh: mesh.clone(),
-            history: recorder.finish(),
-            stop: Stop::TargetAboveInput,
-            counters: Counters::default(),
-        });
+        return run.finish(Stop::TargetAboveInput);
     }
-    let live = LiveMesh::new(mesh, frame);
     let target = Target { triangles };
-    match &options.method {
+    let end = match &options.method {
         MethodOptions::Memoryless(own) => {
-            let method = Memoryless { options: *own };
-            collapse(live, method, options, target, recorder, progress)
+            run.phase("memoryless", Memoryless { options: *own }, target)?
+                .0
         }
         MethodOptions::Quadric(own) => {
-            let method = QuadricMethod::new(&live, own);
-            collapse(live, method, options, target, recorder, progress)
+            let method = QuadricMethod::new(&run.live, own);
+            run.phase("quadric", method, target)?.0
         }
-    }
-}
-
-fn collapse<M: Method>(
-    live: LiveMesh,
-    method: M,
-    options: &Options,
-    target: Target,
-    mut recorder: Recorder,
-    progress: &dyn Progress,
-) -> Result<Outcome> {
-    let mut engine = Engine::new(live, method, options.rules, options.schedule);
-    let end = engine.run(target, &mut recorder, progress)?;
-    let (live, _, counters) = engine.into_parts();
-    Ok(Outcome {
-        mesh: live.to_mesh().map_err(Error::Internal)?,
-        history: recorder.finish(),
-        stop: match end {
-            End::TargetReached => Stop::TargetReached,
-            End::ErrorLimit => Stop::ErrorLimit,
-            End::NoLegalCollapse { blocked } => Stop::NoLegalCollapse { refusals: blocked },
-        },
-        counters,
+        MethodOptions::Image(own) => run.image(own, target)?,
+    };
+    run.finish(match end {
+        End::TargetReached => Stop::TargetReached,
+        End::ErrorLimit => Stop::ErrorLimit,
+        End::NoLegalCollapse { blocked } => Stop::NoLegalCollapse { refusals: blocked },
     })
 }
 
-/// The frame in which half the bounding box's diagonal, hence the bounding radius, is less than 1.
-#[must_use]
-pub fn frame_of(mesh: &Mesh) -> Frame {
-    let size = mesh.bounds().map_or(0.0, |(low, high)| {
-        // Halves before the difference: the difference of two finite coordinates may overflow.
-        let half = high * 0.5 - low * 0.5;
-        let largest = half.max_element();
-        if largest > 0.0 {
-            largest * math::length(half / largest)
-        } else {
-            0.0
+/// A run between its phases.
+struct Run<'a> {
+    mesh: &'a Mesh,
+    live: LiveMesh,
+    options: Options,
+    recorder: Recorder,
+    phases: Vec<Phase>,
+    error_rms: Option<f64>,
+    progress: &'a dyn Progress,
+}
+
+impl<'a> Run<'a> {
+    fn new(mesh: &'a Mesh, options: &Options, progress: &'a dyn Progress) -> Self {
+        let frame = frame_of(mesh);
+        Self {
+            mesh,
+            live: LiveMesh::new(mesh, frame),
+            options: options.clone(),
+            recorder: Recorder::new(mesh, frame),
+            phases: Vec::new(),
+            error_rms: None,
+            progress,
         }
-    });
-    Frame::for_size(size)
+    }
+
+    /// Collapses under one method until the target or its end.
+    fn phase<M: Method>(
+        &mut self,
+        name: &'static str,
+        method: M,
+        target: Target,
+    ) -> Result<(End, M)> {
+        let triangles_in = self.live.triangle_count();
+        let live = std::mem::take(&mut self.live);
+        let mut engine = Engine::new(live, method, self.options.rules, self.options.schedule)
+            .with_rank_measured(self.options.measure_rank);
+        let end = engine.run(target, &mut self.recorder, self.progress);
+        let (live, method, counters) = engine.into_parts();
+        self.live = live;
+        self.phases.push(Phase {
+            method: name,
+            triangles_in,
+            triangles_out: self.live.triangle_count(),
+            counters,
+        });
+        Ok((end?, method))
+    }
+
+    /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
+    fn image(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+        let frame = self.live.frame();
+        let original = self.mesh.enter_frame(frame);
+        let set = own.views(&original, frame)?;
+        let original = Scene::of(&original);
+        let mut start = own.start.triangles(target.triangles);
+        let method = loop {
+            if self.live.triangle_count() > start {
+                let method = Memoryless {
+                    options: own.placement,
+                };
+                self.phase("memoryless", method, Target { triangles: start })?;
+            }
+            self.progress.step("draw", 0, set.views.len() as u64)?;
+            let limit = self.options.error_rms;
+            let method =
+                ImageDriven::new(&original, &self.live, &set, own.placement, limit, |scene| {
+                    BucketEngine::new(Model::new(scene, &set), &set)
+                });
+            // Where an error limits the run, pre-simplification must not use up more than half of it.
+            let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
+            if !too_far || self.phases.is_empty() {
+                break method;
+            }
+            *self = Self::new(self.mesh, &self.options, self.progress);
+            start = usize::MAX;
+        };
+        let start = if start == usize::MAX {
+            Start::Input
+        } else {
+            Start::Triangles(start as u64)
+        };
+        self.options.method = MethodOptions::Image(ImageOptions {
+            start,
+            ..own.clone()
+        });
+        let (end, method) = self.phase("image", method, target)?;
+        self.error_rms = Some(method.error().rms());
+        Ok(end)
+    }
+
+    fn finish(self, stop: Stop) -> Result<Outcome> {
+        let json =
+            serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
+        let mesh = match stop {
+            Stop::TargetAboveInput => self.mesh.clone(),
+            _ => self.live.to_mesh().map_err(Error::Internal)?,
+        };
+        Ok(Outcome {
+            mesh,
+            history: self.recorder.finish(json),
+            stop,
+            phases: self.phases,
+            options: self.options,
+            error_rms: self.error_rms,
+        })
+    }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
+    num::math::sqrt,
     raster::{self, Change, Plane, Scene, Unrender},
     view::ViewSet,
 };
@@ -48,6 +49,13 @@ impl<E: Unrender> ImageError<E> {
     #[must_use]
     pub fn sum(&self) -> u64 {
         self.sum
+    }
+
+    /// Root mean square of the differences over all views, in levels (equation 2).
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        let pixels: usize = self.reference.iter().map(|p| p.values().len()).sum();
+        sqrt(self.sum as f64 / pixels.max(1) as f64)
     }
 
     /// The engine that keeps the pictures.

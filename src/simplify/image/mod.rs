@@ -8,9 +8,11 @@
 
 mod change;
 mod cost;
+mod options;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
+pub use options::{EngineName, ImageOptions, Preset, Start};
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{

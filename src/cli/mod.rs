@@ -1,0 +1,182 @@
+//! The `lodmark` command: one file per subcommand.
+//!
+//! Results go to stdout, talk to stderr. Exit codes: see [`Error::exit_code`]; 1 is a negative verdict.
+
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a command talks to its user"
+)]
+
+mod check;
+mod inspect;
+mod render;
+mod simplify;
+mod source;
+mod terminal;
+
+use std::{
+    panic::{self, AssertUnwindSafe},
+    path::PathBuf,
+    process::ExitCode,
+};
+
+use clap::{Parser, Subcommand, error::ErrorKind};
+
+use crate::{Error, Result};
+use terminal::Terminal;
+
+/// Simplify 3D meshes by what they look like, with the same bits on every machine and no GPU.
+#[derive(Debug, Parser)]
+#[command(
+    name = "lodmark",
+    version,
+    max_term_width = 110,
+    propagate_version = true
+)]
+struct Arguments {
+    #[command(flatten)]
+    common: Common,
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What every command understands.
+#[derive(Clone, Debug, clap::Args)]
+struct Common {
+    /// Number of threads; never changes a result [default: all cores]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Write a report with all resolved options as JSON; equal runs give equal bytes
+    #[arg(long, global = true, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Say nothing on stderr but errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+/// One verb each.
+#[derive(Debug, Subcommand)]
+enum Command {
+    Simplify(simplify::Options),
+    Render(render::Options),
+    Check(check::Options),
+    Inspect(inspect::Options),
+    /// Verbs of the plan that this version does not have yet.
+    #[command(external_subcommand)]
+    Other(Vec<String>),
+}
+
+/// Commands that the documentation names and this version does not have.
+const NOT_BUILT: &[&str] = &[
+    "visibility",
+    "merge-visibility",
+    "check-rays",
+    "bound",
+    "verify",
+    "lod",
+];
+
+/// What a command that succeeded has to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    /// Exit code 0.
+    Good,
+    /// Exit code 1: it worked, and the answer is no.
+    Negative,
+}
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return usage(&error),
+    };
+    let common = arguments.common.clone();
+    // A panic is a bug; it ends with its own exit code, and unwinding removes temporary files.
+    let outcome = panic::catch_unwind(AssertUnwindSafe(|| run(arguments)));
+    let error = match outcome {
+        Ok(Ok(Verdict::Good)) => return ExitCode::SUCCESS,
+        Ok(Ok(Verdict::Negative)) => return ExitCode::from(1),
+        Ok(Err(error)) => error,
+        Err(_) => Error::Internal("the command panicked".into()),
+    };
+    Terminal::new(common.quiet).finish();
+    eprintln!("lodmark: {error}");
+    ExitCode::from(error.exit_code())
+}
+
+fn usage(error: &clap::Error) -> ExitCode {
+    // Nothing can be done where the terminal is gone.
+    let _ = error.print();
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => ExitCode::SUCCESS,
+        _ => ExitCode::from(2),
+    }
+}
+
+fn run(arguments: Arguments) -> Result<Verdict> {
+    let common = &arguments.common;
+    if let Some(threads) = common.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()
+            .map_err(|e| Error::Internal(e.to_string()))?;
+    }
+    let terminal = Terminal::new(common.quiet);
+    let verdict = match arguments.command {
+        Command::Simplify(options) => simplify::run(&options, common, &terminal),
+        Command::Render(options) => render::run(&options, common, &terminal),
+        Command::Check(options) => check::run(&options, common, &terminal),
+        Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Other(words) => {
+            let name = words.first().cloned().unwrap_or_default();
+            Err(if NOT_BUILT.contains(&name.as_str()) {
+                Error::Unsupported(format!(
+                    "`{name}` is not built yet in this version of lodmark"
+                ))
+            } else {
+                Error::Usage(format!(
+                    "there is no command `{name}`; see `lodmark --help`"
+                ))
+            })
+        }
+    };
+    terminal.finish();
+    verdict
+}
+
+/// The frame of every JSON report: schema, command, version, options, then what the command found.
+#[derive(Debug, serde::Serialize)]
+struct Report<'a, O, R> {
+    schema: u32,
+    command: &'a str,
+    version: &'a str,
+    options: O,
+    #[serde(flatten)]
+    result: R,
+}
+
+/// Writes the report of a command where `--json` asks for one.
+fn report(
+    common: &Common,
+    command: &str,
+    options: impl serde::Serialize,
+    result: impl serde::Serialize,
+) -> Result<()> {
+    let Some(path) = &common.json else {
+        return Ok(());
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    crate::output::report::write(
+        path,
+        &Report {
+            schema: 1,
+            command,
+            version,
+            options,
+            result,
+        },
+    )
+}

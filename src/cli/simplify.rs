@@ -1,0 +1,397 @@
+//! `lodmark simplify`: one reduced mesh.
+
+use std::{io::Write, path::PathBuf};
+
+use clap::{ArgGroup, ValueEnum};
+use serde::Serialize;
+
+use super::{Common, Verdict, report, source, terminal::Terminal};
+use crate::{
+    Error, Result,
+    collapse::{Schedule, Topology},
+    io,
+    mesh::{self, content_sha256},
+    simplify::{
+        Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
+        image::{EngineName, ImageOptions, Preset, Start},
+        memoryless::MemorylessOptions,
+        quadric::QuadricOptions,
+        simplify,
+    },
+    view::{Interpolation, ViewsName},
+};
+
+/// Write a mesh with fewer triangles that looks the same
+#[derive(Debug, clap::Args)]
+#[command(group(ArgGroup::new("amount").args(["triangles", "ratio"])))]
+pub(super) struct Options {
+    /// The mesh to simplify: .obj, .ply or .stl
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// Where to write the result; an existing file is replaced
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    /// Simplify to at most this many triangles
+    #[arg(long, short = 't', value_name = "N")]
+    triangles: Option<u64>,
+    /// Simplify to at most this share of the triangles, above 0 and up to 1
+    #[arg(long, value_name = "R")]
+    ratio: Option<f64>,
+    /// Stop before the RMS luma difference over the driving views exceeds this, 0 to 255 (method image)
+    #[arg(long, value_name = "LEVELS")]
+    error_rms: Option<f64>,
+    /// What orders the collapses
+    #[arg(long, value_enum, default_value_t = Method::Image)]
+    method: Method,
+    /// Image method: the recipe
+    #[arg(long, value_enum, default_value_t = PresetName::Default)]
+    preset: PresetName,
+    /// Image method: dodecahedron, rhombicuboctahedron, octahedron:K, or a view file [default: dodecahedron]
+    #[arg(long, value_name = "SET|FILE")]
+    views: Option<ViewsName>,
+    /// Image method: width and height of the driving images [default: 256]
+    #[arg(long, value_name = "PIXELS")]
+    size: Option<u32>,
+    /// Image method: the shading that the result will be seen with [default: flat]
+    #[arg(long, value_enum)]
+    shading: Option<ShadingName>,
+    /// Image method: how many of the views look through the front into the interior
+    #[arg(long, value_name = "K")]
+    interior_views: Option<usize>,
+    /// Image method: triangles at which images take over from the memoryless method, or `none`
+    #[arg(long, value_name = "N|none", value_parser = parse_start)]
+    start_triangles: Option<Start>,
+    /// Image method: how pictures follow the mesh; never changes a result
+    #[arg(long, value_enum)]
+    engine: Option<EngineChoice>,
+    /// When edges are evaluated again; eager is slow and for comparison [default: by preset]
+    #[arg(long, value_enum)]
+    evaluation: Option<Evaluation>,
+    /// Measure the true rank of every K-th collapse among all legal ones; slow, changes no result
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    measure_rank: u64,
+    /// Whether holes may close and parts may merge
+    #[arg(long, value_enum, default_value_t = TopologyName::Preserve)]
+    topology: TopologyName,
+    /// Quadric method: planes with uncertainty (Trettner & Kobbelt 2020)
+    #[arg(long)]
+    probabilistic: bool,
+    /// Write the history of collapses, for `lodmark replay`
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
+    /// Do not unite vertices with equal positions
+    #[arg(long)]
+    no_weld: bool,
+    /// Exit with code 6, writing nothing, where the target is not reached
+    #[arg(long)]
+    strict: bool,
+}
+
+/// Methods by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// By what a collapse does to pictures (Lindstrom & Turk 2000)
+    Image,
+    /// By swept volumes (Lindstrom & Turk 1998/99)
+    Memoryless,
+    /// By distances to planes (Garland & Heckbert 1997/98)
+    Quadric,
+    /// By visibility (not built yet)
+    #[value(hide = true)]
+    Visibility,
+    /// Within a tolerance volume (not built yet)
+    #[value(hide = true)]
+    Tolerance,
+    /// Within an angle for a view cell (not built yet)
+    #[value(hide = true)]
+    ViewBounded,
+}
+
+/// [`Preset`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PresetName {
+    /// The published method to the letter
+    Paper,
+    /// As `default` in this version
+    Fast,
+    /// The published method, but edges at a new vertex are evaluated again at once
+    Default,
+    /// As `default` in this version
+    Best,
+}
+
+/// [`Interpolation`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ShadingName {
+    /// One intensity per triangle
+    Flat,
+    /// Interpolated intensities
+    Gouraud,
+}
+
+/// [`EngineName`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EngineChoice {
+    /// Row and column buckets
+    Buckets,
+}
+
+/// [`Schedule`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Evaluation {
+    /// At the front of the queue
+    Lazy,
+    /// At once at the new vertex, otherwise lazy
+    Semi,
+    /// At once
+    Eager,
+}
+
+/// [`Topology`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum TopologyName {
+    /// Holes, handles and parts stay
+    Preserve,
+    /// Any edge may collapse
+    Free,
+}
+
+fn parse_start(text: &str) -> Result<Start, String> {
+    if text == "none" {
+        return Ok(Start::Input);
+    }
+    match text.parse() {
+        Ok(0) | Err(_) => Err("expected a number of triangles, at least 1, or `none`".into()),
+        Ok(n) => Ok(Start::Triangles(n)),
+    }
+}
+
+/// What the report says about the result.
+#[derive(Debug, Serialize)]
+struct Summary<'a> {
+    input: &'a PathBuf,
+    output: &'a PathBuf,
+    triangles_in: usize,
+    triangles_out: usize,
+    vertices_out: usize,
+    method: &'static str,
+    stop: &'a Stop,
+    error_rms: Option<f64>,
+    phases: &'a [crate::simplify::Phase],
+    content_sha256: String,
+}
+
+impl Options {
+    /// The options of the library; refuses what the method cannot honour.
+    fn resolve(&self) -> Result<RunOptions> {
+        let target = match (self.triangles, self.ratio) {
+            (Some(n), _) => Amount::Triangles(n),
+            (None, Some(r)) => Amount::Ratio(r),
+            (None, None) if self.error_rms.is_some() => Amount::ErrorOnly,
+            (None, None) => {
+                return Err(Error::Usage(
+                    "no target; give --triangles N, --ratio R or --error-rms LEVELS".into(),
+                ));
+            }
+        };
+        let preset = match self.preset {
+            PresetName::Paper => Preset::Paper,
+            PresetName::Fast => Preset::Fast,
+            PresetName::Default => Preset::Default,
+            PresetName::Best => Preset::Best,
+        };
+        let method = match self.method {
+            Method::Image => MethodOptions::Image(self.image(preset)),
+            Method::Memoryless => MethodOptions::Memoryless(MemorylessOptions::default()),
+            Method::Quadric => MethodOptions::Quadric(if self.probabilistic {
+                QuadricOptions::probabilistic()
+            } else {
+                QuadricOptions::default()
+            }),
+            Method::Visibility | Method::Tolerance | Method::ViewBounded => {
+                return Err(Error::Unsupported(format!(
+                    "the method `{}` is not built yet; use image, memoryless or quadric",
+                    self.method
+                        .to_possible_value()
+                        .map_or_else(String::new, |v| v.get_name().to_string())
+                )));
+            }
+        };
+        self.refuse_foreign(&method)?;
+        let mut options = RunOptions {
+            method,
+            ..RunOptions::image(target)
+        };
+        options.error_rms = self.error_rms;
+        options.measure_rank = self.measure_rank;
+        options.schedule = match (self.evaluation, self.method) {
+            (Some(Evaluation::Lazy), _) => Schedule::Lazy,
+            (Some(Evaluation::Semi), _) => Schedule::Semi,
+            (Some(Evaluation::Eager), _) => Schedule::Eager,
+            (None, Method::Image) => preset.schedule(),
+            (None, _) => Schedule::Lazy,
+        };
+        options.rules.topology = match self.topology {
+            TopologyName::Preserve => Topology::Preserve,
+            TopologyName::Free => Topology::Free,
+        };
+        options.check()?;
+        Ok(options)
+    }
+
+    fn image(&self, preset: Preset) -> ImageOptions {
+        let default = ImageOptions {
+            preset,
+            ..ImageOptions::default()
+        };
+        ImageOptions {
+            views: self.views.clone().unwrap_or(default.views),
+            size: self.size.unwrap_or(default.size),
+            shading: match self.shading {
+                None => default.shading,
+                Some(ShadingName::Flat) => Interpolation::Flat,
+                Some(ShadingName::Gouraud) => Interpolation::Gouraud,
+            },
+            interior_views: self.interior_views.unwrap_or(default.interior_views),
+            start: self.start_triangles.unwrap_or(default.start),
+            engine: match self.engine {
+                None => default.engine,
+                Some(EngineChoice::Buckets) => EngineName::Buckets,
+            },
+            ..default
+        }
+    }
+
+    /// An option that the chosen method would ignore is an error.
+    fn refuse_foreign(&self, method: &MethodOptions) -> Result<()> {
+        let image = [
+            ("--views", self.views.is_some()),
+            ("--size", self.size.is_some()),
+            ("--shading", self.shading.is_some()),
+            ("--interior-views", self.interior_views.is_some()),
+            ("--start-triangles", self.start_triangles.is_some()),
+            ("--engine", self.engine.is_some()),
+        ];
+        let quadric = [("--probabilistic", self.probabilistic)];
+        let foreign: &[(&str, bool)] = match method {
+            MethodOptions::Image(_) => &quadric,
+            MethodOptions::Memoryless(_) => &[image.as_slice(), quadric.as_slice()].concat(),
+            MethodOptions::Quadric(_) => &image,
+        };
+        if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
+            return Err(Error::Usage(format!(
+                "{name} means nothing to the method `{}`; leave it out or choose another --method",
+                method.name()
+            )));
+        }
+        if let (
+            MethodOptions::Image(ImageOptions {
+                views: ViewsName::File(path),
+                ..
+            }),
+            true,
+        ) = (
+            method,
+            self.size.is_some() || self.shading.is_some() || self.interior_views.is_some(),
+        ) {
+            return Err(Error::Usage(format!(
+                "--size, --shading and --interior-views are part of the view file {}; leave them out",
+                path.display()
+            )));
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let resolved = options.resolve()?;
+    io::writable_format(&options.output)?;
+    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
+    source::require_triangles(&options.input, &mesh)?;
+    let triangles_in = mesh.triangles().len();
+    let canonical = mesh::canonical(&mesh);
+    drop(mesh);
+    if canonical.degenerate > 0 {
+        terminal.say(&format!(
+            "{}: left out {} triangles that use a vertex twice",
+            options.input.display(),
+            canonical.degenerate
+        ));
+    }
+    let outcome = simplify(&canonical.mesh, &resolved, terminal)?;
+    tell(options, triangles_in, &outcome, terminal);
+    if options.strict && !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput) {
+        return Err(Error::TargetNotReached(format!(
+            "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
+            outcome.mesh.triangles().len()
+        )));
+    }
+    for note in io::write(&options.output, &outcome.mesh)? {
+        terminal.say(&format!("{}: {note}", options.output.display()));
+    }
+    if let Some(path) = &options.history {
+        let bytes = outcome.history.to_bytes();
+        io::atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
+    }
+    let summary = Summary {
+        input: &options.input,
+        output: &options.output,
+        triangles_in,
+        triangles_out: outcome.mesh.triangles().len(),
+        vertices_out: outcome.mesh.positions().len(),
+        method: outcome.options.method.name(),
+        stop: &outcome.stop,
+        error_rms: outcome.error_rms,
+        phases: &outcome.phases,
+        content_sha256: content_sha256(&outcome.mesh),
+    };
+    println!(
+        "{}: {} -> {} triangles, {} vertices",
+        options.output.display(),
+        summary.triangles_in,
+        summary.triangles_out,
+        summary.vertices_out
+    );
+    report(common, "simplify", &outcome.options, summary)?;
+    Ok(Verdict::Good)
+}
+
+/// Says how it ended, in particular where that is short of the target.
+fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
+    for phase in &outcome.phases {
+        let c = &phase.counters;
+        terminal.say(&format!(
+            "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
+            phase.method,
+            phase.triangles_in,
+            phase.triangles_out,
+            c.collapses,
+            c.evaluations,
+            c.evaluations_if_eager
+        ));
+        if !c.ranks.is_empty() {
+            let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
+            terminal.say(&format!(
+                "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
+                phase.method,
+                100.0 * mean,
+                c.ranks.len()
+            ));
+        }
+    }
+    if let Some(rms) = outcome.error_rms {
+        terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
+    }
+    match &outcome.stop {
+        Stop::TargetReached => {}
+        Stop::TargetAboveInput => terminal.say(&format!(
+            "{}: already has {triangles_in} triangles; the result is a copy",
+            options.input.display()
+        )),
+        Stop::ErrorLimit => terminal.say("stopped at the error limit"),
+        Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
+            "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
+            outcome.mesh.triangles().len()
+        )),
+    }
+}

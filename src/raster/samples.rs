@@ -1,0 +1,59 @@
+//! From samples to pixels: sums of integers, and their means for eyes.
+
+use super::{Plane, Scene, draw::luma};
+use crate::view::{View, ViewSet};
+
+/// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.
+#[must_use]
+pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u16> {
+    let samples = luma(scene, view, set).tones;
+    let [sums] = sum(&samples, set.samples, |v| [v]);
+    sums
+}
+
+/// The mean luma of every pixel, rounded to nearest, from the sums of `samples * samples` samples.
+#[must_use]
+pub fn mean_luma(sums: &Plane<u16>, samples: u32) -> Plane<u8> {
+    sums.map(|v| mean(v, samples))
+}
+
+/// The mean colour of every pixel, rounded to nearest, from colours at sample resolution.
+#[must_use]
+pub fn mean_rgb(picture: &Plane<[u8; 3]>, samples: u32) -> Plane<[u8; 3]> {
+    let [red, green, blue] = sum(picture, samples, |v| v);
+    let values = red.values().iter().zip(green.values()).zip(blue.values());
+    let pixels: Vec<[u8; 3]> = values
+        .map(|((&r, &g), &b)| [r, g, b].map(|v| mean(v, samples)))
+        .collect();
+    Plane::new(red.width(), red.height(), pixels).expect("a pixel for every sum")
+}
+
+fn mean(sum: u16, samples: u32) -> u8 {
+    let count = samples * samples;
+    ((u32::from(sum) + count / 2) / count) as u8
+}
+
+/// Sums every channel of `samples` x `samples` blocks; at most 16 samples of 8 bits fit.
+fn sum<T: Copy, const N: usize>(
+    picture: &Plane<T>,
+    samples: u32,
+    channels: impl Fn(T) -> [u8; N],
+) -> [Plane<u16>; N] {
+    let (width, height) = (picture.width() / samples, picture.height() / samples);
+    let mut sums: [Plane<u16>; N] = std::array::from_fn(|_| Plane::filled(width, height, 0));
+    for (y, row) in picture
+        .values()
+        .chunks_exact(picture.width() as usize)
+        .enumerate()
+    {
+        let start = y / samples as usize * width as usize;
+        for (x, block) in row.chunks_exact(samples as usize).enumerate() {
+            for &value in block {
+                for (plane, v) in sums.iter_mut().zip(channels(value)) {
+                    plane.values_mut()[start + x] += u16::from(v);
+                }
+            }
+        }
+    }
+    sums
+}

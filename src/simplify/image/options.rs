@@ -1,0 +1,211 @@
+//! Options of the image-driven method, and the presets that set several at once.
+
+use std::{fmt, str::FromStr};
+
+use serde::{Deserialize, Serialize};
+
+use super::super::memoryless::MemorylessOptions;
+use crate::{
+    Error, Result,
+    collapse::Schedule,
+    mesh::Mesh,
+    num::Frame,
+    view::{self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName},
+};
+
+/// Where the image-driven part of a run begins; the memoryless method gets there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Ten times the target as in Table 1 of the paper for the bunny, but above 32,768 triangles no more than four
+    /// times, as there for the dragon; 65,536 where only an error limits the run.
+    #[default]
+    Auto,
+    /// At this number of triangles.
+    Triangles(u64),
+    /// At the input itself.
+    Input,
+}
+
+impl Start {
+    /// The number of triangles for a target; `usize::MAX` for no pre-simplification.
+    #[must_use]
+    pub fn triangles(self, target: usize) -> usize {
+        match self {
+            Self::Auto if target <= 1 => 65_536,
+            Self::Auto => target
+                .saturating_mul(10)
+                .min(target.saturating_mul(4).max(32_768)),
+            Self::Triangles(n) => usize::try_from(n).unwrap_or(usize::MAX),
+            Self::Input => usize::MAX,
+        }
+    }
+}
+
+/// A recipe. Until better ones land, all are the published method, but for the schedule of evaluations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
+    /// The published method: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.
+    Paper,
+    /// The same as `default` in this version.
+    Fast,
+    /// As `paper`, but the edges of a new vertex are evaluated at once: [`Schedule::Semi`].
+    #[default]
+    Default,
+    /// The same as `default` in this version.
+    Best,
+}
+
+/// How pictures find what a removed triangle hid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EngineName {
+    /// Row and column buckets, section 4.2.3 of the paper.
+    #[default]
+    Buckets,
+}
+
+/// What drives the collapses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ImageOptions {
+    /// The recipe that set the others; it decides nothing itself.
+    pub preset: Preset,
+    /// The views: `dodecahedron`, `rhombicuboctahedron`, `octahedron:K`, or a view file, which says its own size,
+    /// shading and culling.
+    #[serde(with = "views_text")]
+    pub views: ViewsName,
+    /// Width and height of every image, in pixels; 1 to 4096.
+    pub size: u32,
+    /// Flat or Gouraud.
+    pub shading: Interpolation,
+    /// An optional specular term.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specular: Option<Specular>,
+    /// Views that cull fronts, so that interiors count (section 5.2).
+    pub interior_views: usize,
+    /// Where the image-driven part begins.
+    pub start: Start,
+    /// How pictures follow the mesh.
+    pub engine: EngineName,
+    /// Placement of the new vertex (section 4.1).
+    pub placement: MemorylessOptions,
+}
+
+impl Default for ImageOptions {
+    fn default() -> Self {
+        Self {
+            preset: Preset::default(),
+            views: ViewsName::Dodecahedron,
+            size: 256,
+            shading: Interpolation::Flat,
+            specular: None,
+            interior_views: 0,
+            start: Start::Auto,
+            engine: EngineName::Buckets,
+            placement: MemorylessOptions::default(),
+        }
+    }
+}
+
+impl ImageOptions {
+    /// Tests every option that has a range.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] that names the option, its value and the range.
+    pub fn check(&self) -> Result<()> {
+        if self.size == 0 || self.size > 4096 {
+            return Err(Error::Usage(format!(
+                "size is {}; expected 1 to 4096 pixels",
+                self.size
+            )));
+        }
+        if let Some(s) = self.specular {
+            let strength = s.strength >= 0.0 && s.strength <= 1.0;
+            if !strength || s.exponent == 0 {
+                return Err(Error::Usage(format!(
+                    "specular is {} with exponent {}; expected a strength from 0 to 1 and an exponent of at least 1",
+                    s.strength, s.exponent
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The driving views onto `original`, which is in units of `frame`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
+    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel.
+    pub fn views(&self, original: &Mesh, frame: Frame) -> Result<ViewSet> {
+        let sphere = Sphere::of_mesh(original)
+            .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
+        let set = view::resolve(
+            &self.views,
+            &sphere,
+            [self.size; 2],
+            Projection::Perspective,
+        )?;
+        if let ViewsName::File(path) = &self.views {
+            if set.samples != 1 {
+                return Err(Error::Unsupported(format!(
+                    "{} has {} samples per pixel; the driving images have 1",
+                    path.display(),
+                    set.samples
+                )));
+            }
+            return Ok(set.enter_frame(frame));
+        }
+        let shading = Shading {
+            interpolation: self.shading,
+            specular: self.specular,
+            ..Shading::default()
+        };
+        set.with_shading(shading)
+            .with_interior_views(self.interior_views)
+    }
+}
+
+impl Preset {
+    /// When edges are evaluated again. The published method is lazy; evaluating the edges of a new vertex at once
+    /// notices costs that fall.
+    #[must_use]
+    pub const fn schedule(self) -> Schedule {
+        match self {
+            Self::Paper => Schedule::Lazy,
+            Self::Fast | Self::Default | Self::Best => Schedule::Semi,
+        }
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Paper => "paper",
+            Self::Fast => "fast",
+            Self::Default => "default",
+            Self::Best => "best",
+        })
+    }
+}
+
+/// `views` as the text of the command line.
+mod views_text {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    use super::{FromStr, ViewsName};
+
+    pub(super) fn serialize<S: Serializer>(
+        views: &ViewsName,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(views)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<ViewsName, D::Error> {
+        ViewsName::from_str(&String::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
