@@ -143,7 +143,8 @@ fn first_bad_number(bytes: &[u8], precision: Precision) -> Option<String> {
                         "line {line}: the weight of a vertex is 0; expected another number"
                     ));
                 }
-                Some(x) if !precision.round(x).is_finite() && !(may_be_nan && x.is_nan()) => {
+                Some(x) if may_be_nan && x.is_nan() => {}
+                Some(x) if !precision.round(x).is_finite() => {
                     return Some(format!(
                         "line {line}: found `{found}`; expected a finite number"
                     ));

@@ -1,9 +1,8 @@
 //! Reads PLY (G. Turk, 1994), text and binary.
 //!
-//! Our own reader instead of a crate: `ply-rs-bw` 4 fills every item through a trait call per property, reads
-//! element types that the destination must know beforehand, says neither byte nor line in binary files, and hands out
-//! polygons as a list per face. This one reads numbers straight into the mesh, refuses a count that the rest of the
-//! file cannot hold before it allocates, and names the place of every fault.
+//! Our own reader instead of a crate: `ply-rs-bw` 4 bounds what it allocates, but sets every value of every item by the
+//! name of its property, keeps a list per face, and gives no offset in binary files. This one reads numbers straight
+//! into the mesh, refuses at once a count that the rest of the file cannot hold, and names the place of every fault.
 //!
 //! Polygons become fans around their first corner. Corner texture coordinates are the face property `texcoord` as
 //! MeshLab writes it. Integer colours are divided by the largest value of their type.
