@@ -223,6 +223,27 @@ fn what_a_format_cannot_keep_is_said() {
     );
 }
 
+#[test]
+fn triangles_without_a_material_after_others_do_not_inherit_one() {
+    let mut parts = square().into_parts();
+    parts.materials = Materials {
+        names: vec!["none".into()],
+        of_triangle: vec![0, Materials::NONE],
+        libraries: Vec::new(),
+    };
+    let mesh = Mesh::new(parts).expect("valid");
+    let (bytes, notes) = io::encode(&mesh, Encoding::Obj).expect("writes");
+    assert!(
+        notes[0].contains("1 triangles without one get the material `none_`"),
+        "{notes:?}"
+    );
+    let again = io::read_bytes(Format::Obj, &bytes, "-").expect("reads");
+    assert_eq!(
+        material_names(&again.mesh),
+        [Some("none".into()), Some("none_".into())]
+    );
+}
+
 /// A float of any size, now and then a special one.
 fn coordinate(precision: Precision) -> BoxedStrategy<f64> {
     let finite = any::<f64>().prop_filter("finite", |x| x.is_finite());

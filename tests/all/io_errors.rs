@@ -124,6 +124,30 @@ fn colours_of_some_vertices_do_not_shift_to_others() {
 }
 
 #[test]
+fn lines_points_and_slivers_are_told_of() {
+    let loaded = obj(&format!(
+        "{SQUARE}f 1 2\nf 1\nf 1 2 3\nl 1 2\np 1\ns off\nvp 1\nvt 0 0 0.5\n"
+    ))
+    .expect("valid");
+    assert_eq!(loaded.mesh.triangles(), [[0, 1, 2]]);
+    assert!(loaded.mesh.attributes().is_empty());
+    for told in [
+        "2 faces with fewer",
+        "1 lines `l`",
+        "1 lines `p`",
+        "1 lines `s`",
+        "1 lines `vp`",
+        "third texture",
+    ] {
+        assert!(
+            loaded.notes.iter().any(|n| n.contains(told)),
+            "{told}: {:?}",
+            loaded.notes
+        );
+    }
+}
+
+#[test]
 fn a_weight_divides_the_coordinates_and_zero_is_refused() {
     let loaded = obj("v 2 4 6 2\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("valid");
     assert_eq!(loaded.mesh.positions()[0], DVec3::new(1.0, 2.0, 3.0));

@@ -191,8 +191,9 @@ impl Soup {
 
 pub(crate) fn soups() -> impl Strategy<Value = Soup> {
     (3_usize..9, 1_usize..14).prop_flat_map(|(vertices, triangles)| {
-        let index = 0..vertices as u32;
-        let value = prop::sample::select(vec![0.0, -0.0, 0.5, f64::NAN]);
+        // Mostly the same few vertices: copies of triangles are where an order is hard to find.
+        let index = prop_oneof![4 => 0..3_u32, 1 => 0..vertices as u32];
+        let value = prop::sample::select(vec![0.0, 0.0, 0.0, 0.0, -0.0, 0.5, f64::NAN]);
         let corner = [value.clone(), value];
         (
             prop::collection::btree_set([-3_i8..3, -3_i8..3, -3_i8..3], vertices),
