@@ -18,5 +18,7 @@ mod ply_source;
 mod ply_write;
 mod stl_read;
 mod stl_write;
+mod summary;
 
 pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, write};
+pub use summary::Summary;

@@ -9,6 +9,7 @@ mod canonical;
 mod digest;
 mod findings;
 mod indexed;
+mod topology;
 mod unite;
 mod weld;
 

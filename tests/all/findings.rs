@@ -13,7 +13,7 @@ use super::mesh::{FACES, TETRAHEDRON, mesh, soups};
 #[test]
 fn a_closed_tetrahedron_is_clean() {
     let found = Findings::of(&mesh(&TETRAHEDRON, &FACES));
-    assert!(found.is_clean(), "{}", found.report());
+    assert!(found.clean, "{}", found.report());
     assert_eq!(
         (
             found.edges,
@@ -60,7 +60,7 @@ fn every_problem_is_found_with_its_place() {
         [3, 4, 6], // 7: meets the tetrahedron in a vertex only
     ]);
     let found = Findings::of(&mesh(&positions, &triangles));
-    assert!(!found.is_clean());
+    assert!(!found.clean);
     assert_eq!(found.degenerate_triangles.examples, [[4]]);
     assert_eq!(found.zero_area_triangles.examples, [[5]]);
     assert_eq!(found.duplicate_triangles.examples, [[6]]);
@@ -77,6 +77,7 @@ fn every_problem_is_found_with_its_place() {
     assert!(report.ends_with("not clean\n"));
     let json = serde_json::to_value(&found).expect("serializes");
     assert_eq!(json["non_manifold_edges"]["count"], 3);
+    assert_eq!(json["clean"], false);
 }
 
 #[test]
@@ -84,7 +85,7 @@ fn triangles_of_opposite_orientation_are_found() {
     let found = Findings::of(&mesh(&TETRAHEDRON, &[[0, 1, 2], [0, 1, 3]]));
     assert_eq!(found.misoriented_edges.examples, [[0, 1]]);
     let found = Findings::of(&mesh(&TETRAHEDRON, &[[0, 1, 2], [1, 0, 3]]));
-    assert!(found.is_clean());
+    assert!(found.clean);
     assert_eq!((found.boundary_edges, found.boundary_loops), (4, 1));
 }
 
@@ -119,7 +120,7 @@ fn examples_end_at_five_and_the_count_does_not() {
         (9, 5)
     );
     assert_eq!(found.duplicate_triangles.count, 0);
-    assert!(!Findings::of(&Mesh::default()).is_clean());
+    assert!(!Findings::of(&Mesh::default()).clean);
 }
 
 proptest! {

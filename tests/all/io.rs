@@ -224,6 +224,50 @@ fn what_a_format_cannot_keep_is_said() {
 }
 
 #[test]
+fn header_lines_of_ply_may_end_as_on_any_system() {
+    let (bytes, _) = io::encode(&square(), Encoding::PlyLittleEndian).expect("writes");
+    let body = bytes
+        .windows(11)
+        .position(|w| w == b"end_header\n")
+        .expect("a header")
+        + 11;
+    let header = String::from_utf8(bytes[..body].to_vec()).expect("ASCII");
+    for end in ["\r\n", "\r"] {
+        // A first coordinate whose first byte is a line feed must not be taken for part of the header.
+        let mut file = header.replace('\n', end).into_bytes();
+        file.extend_from_slice(&bytes[body..]);
+        let first = file.len() - (bytes.len() - body);
+        file[first] = b'\n';
+        let mesh = io::read_bytes(Format::Ply, &file, "-").expect("reads").mesh;
+        assert_eq!(
+            bits(&mesh)[0][0],
+            f64::from(f32::from_bits(10)).to_bits(),
+            "{end:?}"
+        );
+        assert_eq!(mesh.triangles(), square().triangles());
+    }
+}
+
+#[test]
+fn a_summary_tells_everything_a_file_holds() {
+    let loaded = obj(&format!(
+        "mtllib a.mtl\n{SQUARE}vt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 2/1/1 3/1/1\nusemtl n\nf 1 3 4\ng x\n"
+    ))
+    .expect("valid");
+    let summary = io::Summary::of(&loaded);
+    assert_eq!(
+        summary.report(),
+        "format              OBJ, text, 32-bit coordinates\nvertices            4\ntriangles           2\n\
+         attribute           normals\nattribute           texture coordinates (set 0)\nwedges              6\n\
+         material            m: 1 triangles\nmaterial            n: 1 triangles\nmaterial library    a.mtl\n\
+         note: 1 lines `g`: objects and groups are not kept\n"
+    );
+    let json = serde_json::to_value(&summary).expect("serializes");
+    assert_eq!(json["format"], "obj");
+    assert_eq!(json["materials"][0][0], "m");
+}
+
+#[test]
 fn triangles_without_a_material_after_others_do_not_inherit_one() {
     let mut parts = square().into_parts();
     parts.materials = Materials {
