@@ -16,6 +16,7 @@ mod ply_header;
 mod ply_read;
 mod ply_source;
 mod ply_write;
+mod rows;
 mod stl_read;
 mod stl_write;
 mod summary;

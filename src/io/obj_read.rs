@@ -14,6 +14,7 @@ use tobj::{LoadError, LoadOptions};
 use super::{
     Encoding, Loaded,
     obj_scan::{self, Scan},
+    rows,
 };
 use crate::{
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, unite},
@@ -221,9 +222,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
                 values.extend(&scan.colors[v]);
             }
         }
-        for x in &mut values {
-            *x = precision.round(*x);
-        }
+        rows::settle(&mut values, &kinds, precision);
         let (corners, _) = united.groups.as_chunks::<3>();
         attributes = Attributes::new(&kinds, values, corners.to_vec())?;
     }

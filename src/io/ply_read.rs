@@ -13,6 +13,7 @@ use super::{
     Encoding, Loaded,
     ply_header::{self, Element, Scalar, Shape, Storage},
     ply_source::{Binary, Fault, Source, Text},
+    rows,
 };
 use crate::{
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, compare_rows, unite},
@@ -421,9 +422,7 @@ impl<S: Source> Reader<S> {
 
     fn attributes(&mut self) -> Result<Attributes, String> {
         let precision = self.precision;
-        for x in &mut self.rows {
-            *x = precision.round(*x);
-        }
+        rows::settle(&mut self.rows, &self.kinds, precision);
         if self.corner_uvs.is_empty() {
             return Attributes::new(
                 &self.kinds,
@@ -453,7 +452,11 @@ impl<S: Source> Reader<S> {
             .corner_uvs
             .iter()
             .flatten()
-            .map(|uv| uv.map(|x| precision.round(x)))
+            .map(|uv| {
+                let mut uv = *uv;
+                rows::settle(&mut uv, &[ChannelKind::TexCoord(0)], precision);
+                uv
+            })
             .collect();
         let vertices: &[u32] = self.triangles.as_flattened();
         let united = unite(uvs.len(), |a, b| {
