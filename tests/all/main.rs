@@ -1,9 +1,12 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod findings;
 mod generate;
 mod hostile;
+mod image;
 mod io;
+mod io_errors;
 mod mesh;
 mod metric;
 mod metric_surface;
