@@ -22,6 +22,8 @@ struct State {
     /// The last legal proposal; stale while `dirty`.
     proposal: Option<Proposal>,
     dirty: bool,
+    /// The round in which the edge was last marked.
+    round: u32,
 }
 
 /// Edges in the order of their keys. An illegal edge is in nobody's way: it comes back when its ring changes.
@@ -29,6 +31,7 @@ struct State {
 pub(super) struct Queue {
     heap: Heap,
     states: Vec<State>,
+    round: u32,
 }
 
 /// What comes to the front.
@@ -50,6 +53,7 @@ impl Queue {
         Self {
             heap: Heap::of(entries),
             states,
+            round: 0,
         }
     }
 
@@ -77,16 +81,29 @@ impl Queue {
         }
     }
 
-    /// The edge's ring changed. It waits under its old cost, or at the front where it never had one.
-    pub(super) fn stale(&mut self, live: &LiveMesh, id: u32) {
+    /// The next commit begins.
+    pub(super) fn next_round(&mut self) {
+        self.round = self.round.wrapping_add(1);
+    }
+
+    /// The edge's ring changed. It waits under its old cost, or at the front where it never had one. False where it
+    /// was already marked in this round.
+    pub(super) fn stale(&mut self, live: &LiveMesh, id: u32) -> bool {
         self.grow(id);
+        if self.states[id as usize].round == self.round {
+            return false;
+        }
+        self.states[id as usize].round = self.round;
         self.states[id as usize].dirty = true;
         if self.heap.key(id).is_none() {
-            let Some(ends) = live.edge(id) else { return };
+            let Some(ends) = live.edge(id) else {
+                return false;
+            };
             let old = self.states[id as usize].proposal;
             let key = old.and_then(|p| key(live, id, &p));
             self.heap.set(id, key.unwrap_or(Key::first(ends)));
         }
+        true
     }
 
     /// Forgets an edge whose id is no longer in use.
@@ -108,6 +125,8 @@ impl Queue {
         self.states[id as usize] = State {
             proposal,
             dirty: true,
+            // Not yet marked in this round.
+            round: self.round.wrapping_sub(1),
         };
     }
 

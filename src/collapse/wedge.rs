@@ -120,8 +120,15 @@ pub(super) fn is_feature(live: &LiveMesh, faces: &[RingFace], ends: [u32; 2]) ->
             .any(|&c| {
                 let differs = |end: usize| !rows.same(c, a[first_at[end]], b[other_at[end]]);
                 let mirrored = || {
+                    // Faces that run along the edge the same way show different sides.
+                    let forward = |at: [usize; 2]| (at[0] + 1) % 3 == at[1];
+                    let side = if forward(first_at) == forward(other_at) {
+                        -1.0
+                    } else {
+                        1.0
+                    };
                     matches!(c.kind, ChannelKind::TexCoord(_))
-                        && texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
+                        && side * texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
                 };
                 differs(0) || differs(1) || mirrored()
             })
