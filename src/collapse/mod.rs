@@ -9,6 +9,7 @@ mod engine;
 mod heap;
 mod history;
 pub mod legality;
+mod lists;
 mod live;
 mod method;
 mod patch;

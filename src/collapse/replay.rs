@@ -148,7 +148,8 @@ impl<'a> Replay<'a> {
         if stride == 0 {
             return Ok(());
         }
-        if entry.corners.len() != self.patch.added.len() || entry.rows.len() % stride != 0 {
+        if entry.corners.len() != self.patch.added.len() || !entry.rows.len().is_multiple_of(stride)
+        {
             return Err("has wedges for another number of faces".into());
         }
         let wedges = u64::from(live.wedge_count()) + (entry.rows.len() / stride) as u64;

@@ -394,12 +394,14 @@ impl Ring {
         let mut next = 0;
         while next < reached {
             let [a, b] = fan[next];
-            for i in reached..count {
+            let mut i = reached;
+            while i < count {
                 let [c, d] = fan[i];
                 if a == c || a == d || b == c || b == d {
                     fan.swap(reached, i);
                     reached += 1;
                 }
+                i += 1;
             }
             next += 1;
         }

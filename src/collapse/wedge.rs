@@ -237,8 +237,8 @@ pub(super) fn transfer(live: &LiveMesh, ring: &Ring, position: DVec3, patch: &mu
 
 /// Numbers the classes of corners in one channel: a class is the index of its first corner.
 fn classify(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
-    for i in 0..corners.len() {
-        corners[i].class = i;
+    for (i, corner) in corners.iter_mut().enumerate() {
+        corner.class = i;
     }
     for i in 1..corners.len() {
         for j in 0..i {

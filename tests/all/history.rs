@@ -103,9 +103,7 @@ fn a_history_survives_its_file() {
 fn a_history_of_another_mesh_is_refused() {
     let outcome = run(&shapes::torus(8, 6, 1), 40);
     let other = shapes::torus(8, 6, 2);
-    let refused = Replay::new(&other, &outcome.history)
-        .err()
-        .expect("another mesh");
+    let refused = Replay::new(&other, &outcome.history).expect_err("another mesh");
     assert_eq!(refused.exit_code(), 3);
 }
 
