@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::{Move, Patch, PatchFace, lists::Lists, wedge::WedgeRows};
 use crate::{
-    mesh::{Attributes, Materials, Mesh, MeshParts},
+    mesh::{Materials, Mesh},
     num::{Frame, Precision},
 };
 
@@ -41,19 +41,19 @@ pub struct Changes {
 /// A mesh under surgery. Triangle and vertex ids are those of the mesh it was made from, for ever.
 #[derive(Clone, Debug)]
 pub struct LiveMesh {
-    frame: Frame,
-    precision: Precision,
-    positions: Vec<DVec3>,
-    faces: Vec<[u32; 3]>,
+    pub(super) frame: Frame,
+    pub(super) precision: Precision,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) faces: Vec<[u32; 3]>,
     live: usize,
     faces_at: Lists<u32>,
     edges: Vec<EdgeRecord>,
     free_edges: Vec<u32>,
     edges_at: Lists<Incident>,
     locked: Vec<bool>,
-    rows: WedgeRows,
-    wedges: Vec<[u32; 3]>,
-    materials: Materials,
+    pub(super) rows: WedgeRows,
+    pub(super) wedges: Vec<[u32; 3]>,
+    pub(super) materials: Materials,
     may_have_features: bool,
 }
 
@@ -369,49 +369,6 @@ impl LiveMesh {
         self.rows.truncate(row_values);
     }
 
-    /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and
-    /// wedges are kept.
-    ///
-    /// # Errors
-    /// A sentence, should a promise of [`Mesh`] not hold (a bug).
-    pub fn to_mesh(&self) -> Result<Mesh, String> {
-        let ids: Vec<u32> = (0..self.triangle_ids())
-            .filter(|&t| self.triangle(t).is_some())
-            .collect();
-        let corners = ids.iter().map(|&t| self.faces[t as usize]);
-        let (triangles, vertices) = compacted(corners, self.positions.len());
-        let positions = vertices
-            .iter()
-            .map(|&v| self.frame.leave(self.position(v)))
-            .collect();
-        let attributes = if self.wedges.is_empty() {
-            Attributes::default()
-        } else {
-            let corners = ids.iter().map(|&t| self.wedges[t as usize]);
-            let (corners, wedges) = compacted(corners, self.wedge_count() as usize);
-            let values = wedges
-                .iter()
-                .flat_map(|&w| self.rows.row(w).iter().copied())
-                .collect();
-            Attributes::new(&self.rows.kinds(), values, corners)?
-        };
-        let of_triangle = if self.materials.of_triangle.is_empty() {
-            Vec::new()
-        } else {
-            ids.iter().map(|&t| self.material(t)).collect()
-        };
-        Mesh::new(MeshParts {
-            positions,
-            triangles,
-            attributes,
-            materials: Materials {
-                of_triangle,
-                ..self.materials.clone()
-            },
-            precision: self.precision,
-        })
-    }
-
     fn link_face(&mut self, id: u32, corners: [u32; 3]) {
         self.faces[id as usize] = corners;
         for v in corners {
@@ -486,22 +443,4 @@ fn pair(
         j += usize::from(new.is_some());
         visit(old, new);
     }
-}
-
-/// Triples renumbered to the indices below `count` that they use, and those indices in ascending order.
-fn compacted(
-    triples: impl Iterator<Item = [u32; 3]> + Clone,
-    count: usize,
-) -> (Vec<[u32; 3]>, Vec<u32>) {
-    let mut new = vec![NONE; count];
-    for v in triples.clone().flatten() {
-        new[v as usize] = 0;
-    }
-    let used: Vec<u32> = (0..count as u32)
-        .filter(|&v| new[v as usize] == 0)
-        .collect();
-    for (i, &v) in used.iter().enumerate() {
-        new[v as usize] = i as u32;
-    }
-    (triples.map(|t| t.map(|v| new[v as usize])).collect(), used)
 }

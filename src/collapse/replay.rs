@@ -1,8 +1,6 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
 
-use super::{
-    Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, history::content_sha256,
-};
+use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, content_sha256};
 use crate::{Error, Result, mesh::Mesh};
 
 /// What it takes to undo a record.

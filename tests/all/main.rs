@@ -5,4 +5,5 @@ mod collapse;
 mod history;
 mod memoryless;
 mod quadric;
+mod seams;
 mod shapes;
