@@ -82,7 +82,9 @@ impl Options {
             method: MethodOptions::Memoryless(MemorylessOptions::default()),
             target,
             rules: Rules::default(),
-            schedule: Schedule::default(),
+            // Mean distance on bunny and dragon: within 1 % of the best queue at every level that was measured; lazy
+            // alone is up to 2 % worse for two thirds of the evaluations.
+            schedule: Schedule::Semi,
         }
     }
 
