@@ -229,7 +229,7 @@ impl Options {
             (Some(Evaluation::Semi), _) => Schedule::Semi,
             (Some(Evaluation::Eager), _) => Schedule::Eager,
             (None, Method::Image) => preset.schedule(),
-            (None, _) => Schedule::Lazy,
+            (None, _) => options.schedule,
         };
         options.rules.topology = match self.topology {
             TopologyName::Preserve => Topology::Preserve,

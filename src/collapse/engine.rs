@@ -217,14 +217,14 @@ impl<M: Method> Engine<M> {
         // Every edge whose ring has a face of the patch ends at the new vertex or at a vertex of the link.
         let mut touched = std::mem::take(&mut self.touched);
         touched.clear();
-        touched.extend(self.live.edges_at(vertex));
-        for spoke in &self.ring.spokes {
-            touched.extend(self.live.edges_at(spoke.vertex));
-        }
-        touched.sort_unstable();
-        touched.dedup();
-        for &e in &touched {
-            queue.stale(&self.live, e);
+        queue.next_round();
+        let spokes = self.ring.spokes.iter().map(|s| s.vertex);
+        for v in std::iter::once(vertex).chain(spokes) {
+            for e in self.live.edges_at(v) {
+                if queue.stale(&self.live, e) {
+                    touched.push(e);
+                }
+            }
         }
         self.counters.evaluations_if_eager += touched.len() as u64;
         let live = &self.live;
@@ -236,6 +236,7 @@ impl<M: Method> Engine<M> {
             Schedule::Eager => {}
         }
         if !touched.is_empty() {
+            touched.sort_unstable();
             self.refresh(queue, &touched);
         }
         self.touched = touched;

@@ -1,8 +1,6 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
 
-use super::{
-    Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, history::content_sha256,
-};
+use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, content_sha256};
 use crate::{Error, Result, mesh::Mesh};
 
 /// What it takes to undo a record.
@@ -148,7 +146,8 @@ impl<'a> Replay<'a> {
         if stride == 0 {
             return Ok(());
         }
-        if entry.corners.len() != self.patch.added.len() || entry.rows.len() % stride != 0 {
+        if entry.corners.len() != self.patch.added.len() || !entry.rows.len().is_multiple_of(stride)
+        {
             return Err("has wedges for another number of faces".into());
         }
         let wedges = u64::from(live.wedge_count()) + (entry.rows.len() / stride) as u64;

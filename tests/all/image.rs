@@ -124,7 +124,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
             canonical(&lodmark::mesh::weld(mesh(&book, pages)).mesh).mesh,
         ),
         ("duplicate faces", mesh(&rim, fan.collect())),
-        ("seams and materials", generate::cube()),
+        ("seams", canonical(&generate::textured_torus(10, 6)).mesh),
     ]
 }
 

@@ -1,17 +1,23 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod collapse;
 mod findings;
 mod generate;
+mod history;
 mod hostile;
 mod image;
 mod io;
 mod io_errors;
+mod memoryless;
 mod mesh;
 mod metric;
 mod metric_surface;
 mod output;
+mod quadric;
 mod raster;
+mod seams;
+mod shapes;
 mod unrender;
 mod view;
 
