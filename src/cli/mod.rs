@@ -9,6 +9,7 @@
 )]
 
 mod check;
+mod compare;
 mod inspect;
 mod render;
 mod simplify;
@@ -60,6 +61,7 @@ struct Common {
 enum Command {
     Simplify(simplify::Options),
     Render(render::Options),
+    Compare(compare::Options),
     Check(check::Options),
     Inspect(inspect::Options),
     /// Verbs of the plan that this version does not have yet.
@@ -128,6 +130,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
     let verdict = match arguments.command {
         Command::Simplify(options) => simplify::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
+        Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Other(words) => {
