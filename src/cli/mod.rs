@@ -12,6 +12,7 @@ mod check;
 mod compare;
 mod inspect;
 mod render;
+mod replay;
 mod simplify;
 mod source;
 mod terminal;
@@ -60,6 +61,7 @@ struct Common {
 #[derive(Debug, Subcommand)]
 enum Command {
     Simplify(simplify::Options),
+    Replay(replay::Options),
     Render(render::Options),
     Compare(compare::Options),
     Check(check::Options),
@@ -129,6 +131,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
     let terminal = Terminal::new(common.quiet);
     let verdict = match arguments.command {
         Command::Simplify(options) => simplify::run(&options, common, &terminal),
+        Command::Replay(options) => replay::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),

@@ -10,10 +10,10 @@ use std::path::Path;
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
-use super::{LiveMesh, Observer, Patch, content_sha256};
+use super::{LiveMesh, Observer, Patch};
 use crate::{
     Error, Result,
-    mesh::Mesh,
+    mesh::{Mesh, content_digest},
     num::{Frame, Precision},
 };
 
@@ -26,7 +26,7 @@ const COLLAPSE: u8 = 1;
 pub struct Header {
     /// Version of the crate that recorded it.
     pub version: String,
-    /// [`content_sha256`] of the input.
+    /// [`content_digest`] of the input.
     pub input: [u8; 32],
     /// The resolved options, as JSON.
     pub options: String,
@@ -314,7 +314,7 @@ impl Recorder {
             history: History {
                 header: Header {
                     version: env!("CARGO_PKG_VERSION").into(),
-                    input: content_sha256(mesh),
+                    input: content_digest(mesh),
                     options: String::new(),
                     precision: mesh.precision(),
                     frame,

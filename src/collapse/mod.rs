@@ -6,7 +6,6 @@
 //! [`Method`] where the new vertex lies and what it costs, and the [`Engine`] which edge is next.
 
 mod compact;
-mod content;
 mod engine;
 mod heap;
 mod history;
@@ -20,7 +19,6 @@ mod replay;
 mod ring;
 pub mod wedge;
 
-pub use content::content_sha256;
 pub use engine::{Counters, End, Engine, Observer, Target};
 pub use heap::{Heap, Key};
 pub use history::{Collapse, Entry, Header, History, Recorder};

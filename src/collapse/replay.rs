@@ -1,7 +1,10 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
 
-use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, content_sha256};
-use crate::{Error, Result, mesh::Mesh};
+use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring};
+use crate::{
+    Error, Result,
+    mesh::{Mesh, content_digest},
+};
 
 /// What it takes to undo a record.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +33,7 @@ impl<'a> Replay<'a> {
     /// [`Error::Input`] where it is not.
     pub fn new(mesh: &Mesh, history: &'a History) -> Result<Self> {
         let header = history.header();
-        if content_sha256(mesh) != header.input {
+        if content_digest(mesh) != header.input {
             return Err(Error::input(
                 "-",
                 "the history was recorded on another mesh; expected the same file, loaded with the same options",

@@ -197,7 +197,7 @@ fn run(mesh: &Mesh, seed: u64, topology: Topology, triangles: usize) -> (LiveMes
 }
 
 proptest! {
-    #![proptest_config(shapes::cases(48))]
+    #![proptest_config(crate::cases(48))]
 
     #[test]
     fn after_every_collapse_adjacency_is_what_a_rebuild_finds(

@@ -25,7 +25,7 @@ fn read(bytes: &[u8]) -> Result<History, Error> {
 }
 
 proptest! {
-    #![proptest_config(shapes::cases(24))]
+    #![proptest_config(crate::cases(24))]
 
     #[test]
     fn every_level_of_a_replay_is_the_direct_run_to_it(

@@ -190,7 +190,7 @@ fn swept(live: &LiveMesh, ring: &Ring, v: DVec3) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(shapes::cases(64))]
+    #![proptest_config(crate::cases(64))]
 
     #[test]
     fn placement_keeps_the_volume_and_no_neighbour_on_that_plane_is_better(seed: u64) {

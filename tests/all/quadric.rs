@@ -78,7 +78,7 @@ fn a_flat_ring_has_no_minimum_and_every_point_of_the_edge_is_as_good() {
 }
 
 proptest! {
-    #![proptest_config(shapes::cases(256))]
+    #![proptest_config(crate::cases(256))]
 
     #[test]
     fn a_sum_of_planes_is_the_sum_of_squared_distances(seed: u64, count in 1_usize..9) {

@@ -81,7 +81,7 @@ fn corners_of_seams(mesh: &Mesh) -> Vec<DVec3> {
 }
 
 proptest! {
-    #![proptest_config(shapes::cases(24))]
+    #![proptest_config(crate::cases(24))]
 
     #[test]
     fn seams_stay_closed_charts_stay_apart_and_coordinates_stay_in_range(

@@ -25,15 +25,6 @@ impl Random {
     }
 }
 
-/// That many cases; nothing is written beside the sources.
-pub(crate) fn cases(count: u32) -> proptest::test_runner::Config {
-    proptest::test_runner::Config {
-        cases: count,
-        failure_persistence: None,
-        ..proptest::test_runner::Config::default()
-    }
-}
-
 fn jitter(positions: &mut [DVec3], amount: f64, random: &mut Random) {
     for p in positions {
         let mut axis = || (random.unit() - 0.5) * amount;
