@@ -9,8 +9,10 @@
 )]
 
 mod check;
+mod golden;
 mod inspect;
 mod render;
+mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
@@ -62,6 +64,8 @@ enum Command {
     Render(render::Options),
     Check(check::Options),
     Inspect(inspect::Options),
+    Golden(golden::Options),
+    Selfcheck(selfcheck::Options),
     /// Verbs of the plan that this version does not have yet.
     #[command(external_subcommand)]
     Other(Vec<String>),
@@ -130,6 +134,8 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Golden(options) => golden::run(&options, common, &terminal),
+        Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),
         Command::Other(words) => {
             let name = words.first().cloned().unwrap_or_default();
             Err(if NOT_BUILT.contains(&name.as_str()) {

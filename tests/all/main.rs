@@ -2,6 +2,7 @@
 
 mod architecture;
 mod generate;
+mod golden;
 mod hostile;
 mod io;
 mod mesh;
