@@ -3,7 +3,7 @@
 use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
     Result, Silent,
-    mesh::{Mesh, generate},
+    mesh::{Materials, Mesh, MeshParts, generate},
     metric::{
         luma::ViewErrors,
         silhouette::silhouette_histogram,
@@ -41,6 +41,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
             80,
         ),
         ("terrain", terrain(), 100),
+        ("two-materials", two_materials(), 100),
         ("shells", generate::shells(2, 2), 120),
         ("probe", generate::probe(), 150),
     ];
@@ -75,8 +76,10 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
         }),
         ..small.clone()
     };
+    // Every driving view of the published method, after memoryless pre-simplification.
     let published = ImageOptions {
-        size: 96,
+        size: 64,
+        start: Start::Triangles(180),
         ..ImageOptions::default()
     };
     let torus = || generate::torus(1.0, 0.4, 16, 8);
@@ -91,6 +94,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
             &small,
         ),
         ("terrain/image-gouraud", terrain(), 120, &gouraud),
+        ("two-materials/image-flat", two_materials(), 150, &small),
         (
             "shells/image-interior",
             generate::shells(2, 2),
@@ -101,7 +105,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
         (
             "icosphere/image-published",
             generate::icosphere(3),
-            60,
+            120,
             &published,
         ),
     ] {
@@ -216,6 +220,24 @@ pub(super) fn compared(collector: &mut Collector) -> Result<()> {
 /// An open surface with a boundary.
 fn terrain() -> Mesh {
     generate::grid(12, 12, generate::Height::Polynomial)
+}
+
+/// An open surface with a material for each half: the border between them has to stay.
+fn two_materials() -> Mesh {
+    let mesh = terrain();
+    let half = |t: &[u32; 3]| u32::from(mesh.positions()[t[0] as usize].x >= 0.0);
+    Mesh::new(MeshParts {
+        positions: mesh.positions().to_vec(),
+        triangles: mesh.triangles().to_vec(),
+        materials: Materials {
+            names: vec!["left".into(), "right".into()],
+            of_triangle: mesh.triangles().iter().map(half).collect(),
+            libraries: Vec::new(),
+        },
+        precision: mesh.precision(),
+        ..MeshParts::default()
+    })
+    .expect("the mesh was valid before")
 }
 
 fn image(own: &ImageOptions, target: Amount) -> Options {
