@@ -10,9 +10,12 @@
 
 mod check;
 mod compare;
+mod demo;
+mod golden;
 mod inspect;
 mod render;
 mod replay;
+mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
@@ -66,6 +69,9 @@ enum Command {
     Compare(compare::Options),
     Check(check::Options),
     Inspect(inspect::Options),
+    Golden(golden::Options),
+    Selfcheck(selfcheck::Options),
+    Demo(demo::Options),
     /// Verbs of the plan that this version does not have yet.
     #[command(external_subcommand)]
     Other(Vec<String>),
@@ -136,6 +142,9 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Golden(options) => golden::run(&options, common, &terminal),
+        Command::Demo(options) => demo::run(&options, common, &terminal),
+        Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),
         Command::Other(words) => {
             let name = words.first().cloned().unwrap_or_default();
             Err(if NOT_BUILT.contains(&name.as_str()) {

@@ -4,6 +4,7 @@
 //! are compared by the hash of their pixels ([`hash`]), never by that of a PNG file, which depends on the encoder.
 
 mod font;
+pub mod golden;
 pub mod hash;
 pub mod npy;
 pub mod png;

@@ -11,6 +11,8 @@ mod outcome;
 pub mod quadric;
 mod run;
 
+/// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
+pub use crate::collapse::{History, Replay};
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
 pub use run::simplify;

@@ -4,6 +4,7 @@ mod architecture;
 mod collapse;
 mod findings;
 mod generate;
+mod golden;
 mod history;
 mod hostile;
 mod image;

@@ -1,0 +1,84 @@
+//! `lodmark golden`: what this version computes, held against files, to the last bit.
+
+use std::path::PathBuf;
+
+use super::{Common, Verdict, report, terminal::Terminal};
+use crate::{
+    Result,
+    output::golden::{self, Group, Record},
+};
+
+/// Hold what this version computes against the recorded values, or record them
+#[derive(Debug, clap::Args)]
+pub(super) struct Options {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Verb {
+    /// Compare to the last bit; exit code 1 where anything differs
+    Check {
+        #[command(flatten)]
+        place: Place,
+        /// Folder for `expected | actual | difference` pictures and mismatches.json; made where something differs
+        #[arg(long, value_name = "DIR", default_value = "target/golden")]
+        out: PathBuf,
+    },
+    /// Record what this version computes; say in the commit why it should change
+    Bless(Place),
+    /// Print names and values as this version computes them
+    List,
+}
+
+#[derive(Debug, clap::Args)]
+struct Place {
+    /// Folder of golden.txt and its pictures
+    #[arg(long, value_name = "DIR", default_value = "golden")]
+    dir: PathBuf,
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let items = Group::all(terminal)?;
+    match &options.verb {
+        Verb::Check { place, out } => {
+            let mismatches = golden::check(&place.dir, &items, out)?;
+            report(
+                common,
+                "golden",
+                serde_json::json!({ "verb": "check", "dir": place.dir }),
+                serde_json::json!({ "goldens": items.len(), "mismatches": mismatches }),
+            )?;
+            if mismatches.is_empty() {
+                println!("{}: all {} goldens hold", place.dir.display(), items.len());
+                return Ok(Verdict::Good);
+            }
+            for mismatch in &mismatches {
+                println!("{mismatch}");
+            }
+            println!(
+                "{}: {} of {} goldens do not hold; see {}",
+                place.dir.display(),
+                mismatches.len(),
+                items.len(),
+                out.display()
+            );
+            terminal.say(&format!(
+                "where the change is meant: lodmark golden bless --dir {}, and say why in the commit",
+                place.dir.display()
+            ));
+            Ok(Verdict::Negative)
+        }
+        Verb::Bless(place) => {
+            golden::bless(&place.dir, &items)?;
+            println!("{}: recorded {} goldens", place.dir.display(), items.len());
+            Ok(Verdict::Good)
+        }
+        Verb::List => {
+            for (name, value) in Record::of(&items).iter() {
+                println!("{name} {value}");
+            }
+            Ok(Verdict::Good)
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! `lodmark selfcheck`: whether this program computes the right bits on this machine.
+
+use super::{Common, Verdict, report, terminal::Terminal};
+use crate::{
+    Error, Progress, Result,
+    output::golden::{GROUPS, Record},
+};
+
+/// Compute the goldens that this program was built with, without any files; exit code 1 where a bit differs
+#[derive(Debug, clap::Args)]
+pub(super) struct Options {}
+
+/// What the program runs on: none of it may change a result.
+#[derive(Debug, serde::Serialize)]
+struct Machine {
+    architecture: &'static str,
+    system: &'static str,
+    threads: usize,
+    /// Whether overflow checks and debug assertions are compiled in.
+    build: &'static str,
+    /// Instruction sets beyond the architecture's baseline that the compiler was free to use.
+    features: Vec<&'static str>,
+}
+
+impl Machine {
+    fn here() -> Self {
+        let sets = [
+            ("sse4.2", cfg!(target_feature = "sse4.2")),
+            ("avx", cfg!(target_feature = "avx")),
+            ("avx2", cfg!(target_feature = "avx2")),
+            ("fma", cfg!(target_feature = "fma")),
+            ("avx512f", cfg!(target_feature = "avx512f")),
+            ("neon", cfg!(target_feature = "neon")),
+            ("sve", cfg!(target_feature = "sve")),
+        ];
+        Self {
+            architecture: std::env::consts::ARCH,
+            system: std::env::consts::OS,
+            threads: rayon::current_num_threads(),
+            build: if cfg!(debug_assertions) {
+                "debug"
+            } else {
+                "release"
+            },
+            features: sets
+                .into_iter()
+                .filter_map(|(name, on)| on.then_some(name))
+                .collect(),
+        }
+    }
+}
+
+pub(super) fn run(_: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let machine = Machine::here();
+    println!(
+        "lodmark {} on {}-{}, {} threads, {} build, instruction sets: {}",
+        env!("CARGO_PKG_VERSION"),
+        machine.architecture,
+        machine.system,
+        machine.threads,
+        machine.build,
+        if machine.features.is_empty() {
+            "baseline".to_string()
+        } else {
+            machine.features.join(" ")
+        }
+    );
+    let record = Record::embedded().map_err(Error::Internal)?;
+    let mut mismatches = Vec::new();
+    for (i, group) in GROUPS.iter().enumerate() {
+        terminal.step("goldens", i as u64, GROUPS.len() as u64)?;
+        let items = group.items()?;
+        let found = record.group(group.name).compare(&items);
+        let verdict = if found.is_empty() {
+            "ok".to_string()
+        } else {
+            format!("{} DIFFER", found.len())
+        };
+        println!(
+            "  {:9} {:4} {verdict:12} {}",
+            group.name,
+            items.len(),
+            group.about
+        );
+        mismatches.extend(found);
+    }
+    for mismatch in &mismatches {
+        println!("{mismatch}");
+    }
+    println!(
+        "{}",
+        if mismatches.is_empty() {
+            "every bit is as it should be"
+        } else {
+            "this program does not compute what it should on this machine; please report it"
+        }
+    );
+    report(
+        common,
+        "selfcheck",
+        &machine,
+        serde_json::json!({ "goldens": record.len(), "mismatches": mismatches }),
+    )?;
+    Ok(if mismatches.is_empty() {
+        Verdict::Good
+    } else {
+        Verdict::Negative
+    })
+}

@@ -1,0 +1,143 @@
+//! Cases and what they produce.
+
+use sha2::{Digest, Sha256};
+
+use super::{files, pictures, results};
+use crate::{
+    Progress, Result,
+    mesh::{Mesh, content_sha256},
+    output::{
+        hash::{Raw, plane_sha256},
+        png::Picture,
+    },
+    raster::Plane,
+};
+
+/// One result: a name, its exact value, and for some a picture for eyes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// `group/case/...`: lower-case letters, digits, `-`, `.` and `/`.
+    pub name: String,
+    /// A SHA-256 in hexadecimal digits, or exact integers; one line.
+    pub value: String,
+    /// What was hashed, where a person may want to see it.
+    pub picture: Option<Picture>,
+}
+
+/// Cases that test one stage.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// First part of the names of its items.
+    pub name: &'static str,
+    /// What the cases are, in a few words.
+    pub about: &'static str,
+    run: fn(&mut Collector) -> Result<()>,
+}
+
+/// Every case there is, in the order in which data flows.
+pub const GROUPS: &[Group] = &[
+    Group {
+        name: "generate",
+        about: "content of the generated meshes",
+        run: results::generators,
+    },
+    Group {
+        name: "files",
+        about: "bytes of written meshes, and meshes read back",
+        run: files::meshes,
+    },
+    Group {
+        name: "views",
+        about: "matrices of every view set, and view files",
+        run: files::views,
+    },
+    Group {
+        name: "pictures",
+        about: "ids, depth, luma, colours and coverage",
+        run: pictures::pictures,
+    },
+    Group {
+        name: "simplify",
+        about: "simplified meshes of every method",
+        run: results::simplified,
+    },
+    Group {
+        name: "replay",
+        about: "middle levels of a recorded run, coarser and finer",
+        run: results::replayed,
+    },
+    Group {
+        name: "compare",
+        about: "squared luma errors, distances, silhouettes",
+        run: results::compared,
+    },
+];
+
+impl Group {
+    /// Computes the group's items, in a fixed order.
+    ///
+    /// # Errors
+    /// What the stage under test reports; none is expected.
+    pub fn items(&self) -> Result<Vec<Item>> {
+        let mut collector = Collector {
+            group: self.name,
+            items: Vec::new(),
+        };
+        (self.run)(&mut collector)?;
+        Ok(collector.items)
+    }
+
+    /// Computes the items of all groups, in the order of [`GROUPS`].
+    ///
+    /// # Errors
+    /// As [`Group::items`]; [`Error::Interrupted`](crate::Error::Interrupted).
+    pub fn all(progress: &dyn Progress) -> Result<Vec<Item>> {
+        let mut items = Vec::new();
+        for (i, group) in GROUPS.iter().enumerate() {
+            progress.step("goldens", i as u64, GROUPS.len() as u64)?;
+            items.extend(group.items()?);
+        }
+        Ok(items)
+    }
+}
+
+/// Gathers the items of a group.
+#[derive(Debug)]
+pub struct Collector {
+    group: &'static str,
+    items: Vec<Item>,
+}
+
+impl Collector {
+    /// A value that is exact as text.
+    pub(super) fn text(&mut self, name: &str, value: String) {
+        self.items.push(Item {
+            name: format!("{}/{name}", self.group),
+            value,
+            picture: None,
+        });
+    }
+
+    /// The content of a mesh.
+    pub(super) fn mesh(&mut self, name: &str, mesh: &Mesh) {
+        self.text(name, content_sha256(mesh));
+    }
+
+    /// The bytes of a file.
+    pub(super) fn bytes(&mut self, name: &str, bytes: &[u8]) {
+        let digits = Sha256::digest(bytes);
+        self.text(name, digits.iter().map(|b| format!("{b:02x}")).collect());
+    }
+
+    /// The pixels of a plane.
+    pub(super) fn plane<T: Raw>(&mut self, name: &str, plane: &Plane<T>) {
+        self.text(name, plane_sha256(plane));
+    }
+
+    /// Shows the picture that the last item hashed.
+    pub(super) fn shown(&mut self, picture: Picture) {
+        if let Some(item) = self.items.last_mut() {
+            item.picture = Some(picture);
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Goldens: what this version computes for a fixed set of small cases, to the last bit.
+//!
+//! A golden is a name and a value: the SHA-256 of raw pixels, of a mesh or of the bytes of a file, or a few exact
+//! integers. All lie sorted in one text file ([`Record`]), a few also as small pictures for eyes, which are compared by
+//! their pixels. There is no tolerance. A golden changes only together with the reason why the result should change.
+//!
+//! The cases use generated meshes, so that they need no files: [`Record::embedded`] is the text file as it was when
+//! this program was built, and `lodmark selfcheck` holds the machine it runs on against it. The whole set takes about
+//! a second in release, so that slow machines and emulators can run it too.
+
+mod files;
+mod folder;
+mod item;
+mod pictures;
+mod record;
+mod results;
+
+pub use folder::{RECORD_NAME, bless, check, picture_path};
+pub use item::{Collector, GROUPS, Group, Item};
+pub use record::{Mismatch, Record};

@@ -1,0 +1,268 @@
+//! Cases of meshes and numbers: generators, methods, replay, comparisons.
+
+use super::{Collector, files::sphere_of, pictures::colored};
+use crate::{
+    Result, Silent,
+    mesh::{Materials, Mesh, MeshParts, generate},
+    metric::{
+        luma::ViewErrors,
+        silhouette::silhouette_histogram,
+        surface::{OneSided, surface_distance},
+    },
+    raster::{Plane, Scene, luma_sums},
+    simplify::{
+        Amount, MethodOptions, Options, Outcome, Replay,
+        image::{ImageOptions, Start},
+        quadric::QuadricOptions,
+        simplify,
+    },
+    view::{self, Interpolation, Projection, Shading, Specular, ViewsName, frame_of},
+};
+
+/// The content of every generated mesh.
+pub(super) fn generators(collector: &mut Collector) -> Result<()> {
+    for &name in generate::NAMES {
+        if let Some(mesh) = generate::by_name(name) {
+            collector.mesh(name, &mesh);
+        }
+    }
+    Ok(())
+}
+
+/// Every method on closed, open, seamed and coloured meshes.
+pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
+    let geometric = [
+        ("cube", generate::cube(), 8),
+        ("torus", generate::torus(1.0, 0.4, 24, 12), 120),
+        ("textured-torus", generate::textured_torus(24, 12), 150),
+        (
+            "colored-torus",
+            colored(&generate::torus(1.0, 0.4, 16, 8)),
+            80,
+        ),
+        ("terrain", terrain(), 100),
+        ("two-materials", two_materials(), 100),
+        ("shells", generate::shells(2, 2), 120),
+        ("probe", generate::probe(), 150),
+    ];
+    for (name, mesh, triangles) in &geometric {
+        let target = Amount::Triangles(*triangles);
+        let mut probabilistic = Options::quadric(target);
+        probabilistic.method = MethodOptions::Quadric(QuadricOptions::probabilistic());
+        for (method, options) in [
+            ("memoryless", Options::memoryless(target)),
+            ("quadric", Options::quadric(target)),
+            ("quadric-probabilistic", probabilistic),
+        ] {
+            let outcome = simplify(mesh, &options, &Silent)?;
+            outcome_items(collector, &format!("{name}/{method}"), &outcome);
+        }
+    }
+    let small = ImageOptions {
+        views: ViewsName::Octahedron(0),
+        size: 64,
+        start: Start::Input,
+        ..ImageOptions::default()
+    };
+    let gouraud = ImageOptions {
+        shading: Interpolation::Gouraud,
+        ..small.clone()
+    };
+    let interior = ImageOptions {
+        interior_views: 2,
+        specular: Some(Specular {
+            strength: 0.4,
+            exponent: 8,
+        }),
+        ..small.clone()
+    };
+    // Every driving view of the published method, after memoryless pre-simplification.
+    let published = ImageOptions {
+        size: 64,
+        start: Start::Triangles(180),
+        ..ImageOptions::default()
+    };
+    let torus = || generate::torus(1.0, 0.4, 16, 8);
+    for (name, mesh, triangles, own) in [
+        ("torus/image-flat", torus(), 90, &small),
+        ("torus/image-gouraud", torus(), 90, &gouraud),
+        ("cube/image-flat", generate::cube(), 8, &small),
+        (
+            "textured-torus/image-flat",
+            generate::textured_torus(16, 8),
+            120,
+            &small,
+        ),
+        ("terrain/image-gouraud", terrain(), 120, &gouraud),
+        ("two-materials/image-flat", two_materials(), 150, &small),
+        (
+            "shells/image-interior",
+            generate::shells(2, 2),
+            400,
+            &interior,
+        ),
+        ("probe/image-flat", generate::probe(), 300, &small),
+        (
+            "icosphere/image-published",
+            generate::icosphere(3),
+            120,
+            &published,
+        ),
+    ] {
+        let outcome = simplify(&mesh, &image(own, Amount::Triangles(triangles)), &Silent)?;
+        outcome_items(collector, name, &outcome);
+    }
+    let mut limited = image(&small, Amount::ErrorOnly);
+    limited.error_rms = Some(4.0);
+    let outcome = simplify(&torus(), &limited, &Silent)?;
+    outcome_items(collector, "torus/image-error-rms", &outcome);
+    Ok(())
+}
+
+/// Levels between the input and the end of a run, reached from both sides.
+pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
+    let own = ImageOptions {
+        views: ViewsName::Octahedron(0),
+        size: 48,
+        start: Start::Triangles(200),
+        ..ImageOptions::default()
+    };
+    let textured = generate::textured_torus(16, 8);
+    for (name, mesh, options) in [
+        (
+            "terrain/image",
+            terrain(),
+            image(&own, Amount::Triangles(150)),
+        ),
+        (
+            "textured-torus/memoryless",
+            textured,
+            Options::memoryless(Amount::Triangles(60)),
+        ),
+    ] {
+        let outcome = simplify(&mesh, &options, &Silent)?;
+        let mut replay = Replay::new(&mesh, &outcome.history)?;
+        for (step, triangles) in [
+            ("coarser", 180),
+            ("end", 1),
+            ("finer", 220),
+            ("input", usize::MAX),
+        ] {
+            replay.seek(triangles)?;
+            let level = replay.live().to_mesh().map_err(crate::Error::Internal)?;
+            collector.mesh(&format!("{name}/{step}"), &level);
+        }
+    }
+    Ok(())
+}
+
+/// Squared luma errors as integers, distances as bits, silhouettes as counts.
+pub(super) fn compared(collector: &mut Collector) -> Result<()> {
+    let reference = generate::torus(1.0, 0.4, 24, 12);
+    let candidate = simplify(
+        &reference,
+        &Options::memoryless(Amount::Triangles(100)),
+        &Silent,
+    )?
+    .mesh;
+    let sphere = sphere_of(&reference)?;
+    let name = ViewsName::Rhombicuboctahedron;
+    let flat = view::resolve(&name, &sphere, [48, 48], Projection::Perspective)?.with_samples(2)?;
+    let gouraud = flat.clone().with_shading(Shading {
+        interpolation: Interpolation::Gouraud,
+        ..Shading::default()
+    });
+    let frame = frame_of(&reference);
+    let scenes = [&reference, &candidate].map(|m| Scene::of(&m.enter_frame(frame)));
+    for (shading, set) in [("flat", &flat), ("gouraud", &gouraud)] {
+        let set = set.enter_frame(frame);
+        let [expected, actual] = scenes.each_ref().map(|scene| {
+            let views = set.views.iter();
+            views
+                .map(|v| luma_sums(scene, v, &set))
+                .collect::<Vec<Plane<u16>>>()
+        });
+        let errors = ViewErrors::between(&expected, &actual, set.samples * set.samples)?;
+        let sums = errors.views().iter().map(|e| e.sum.to_string());
+        let sums = sums.collect::<Vec<_>>().join(" ");
+        collector.text(&format!("luma/{shading}/views"), sums);
+        let total = errors.total();
+        collector.text(
+            &format!("luma/{shading}/total"),
+            format!("{} {} {}", total.sum, total.pixels, total.samples),
+        );
+        let psnr = total.psnr().unwrap_or(f64::INFINITY);
+        collector.text(
+            &format!("luma/{shading}/rms-psnr-bits"),
+            bits(&[total.rms(), psnr]),
+        );
+    }
+    let distance = surface_distance(&reference, &candidate, 2_000, &Silent)?;
+    let one_sided = |d: &OneSided| {
+        let a = d.absolute;
+        format!("{} {}", d.samples, bits(&[a.mean, a.rms, a.max]))
+    };
+    collector.text(
+        "distance/to-candidate-bits",
+        one_sided(&distance.to_candidate),
+    );
+    collector.text(
+        "distance/to-reference-bits",
+        one_sided(&distance.to_reference),
+    );
+    let eyes: Vec<_> = flat.views.iter().map(|v| v.eye).collect();
+    let histogram = silhouette_histogram(&candidate, &eyes, &Silent)?;
+    let counts = histogram.counts().iter().map(u64::to_string);
+    collector.text("silhouette", counts.collect::<Vec<_>>().join(" "));
+    Ok(())
+}
+
+/// An open surface with a boundary.
+fn terrain() -> Mesh {
+    generate::grid(12, 12, generate::Height::Polynomial)
+}
+
+/// An open surface with a material for each half: the border between them has to stay.
+fn two_materials() -> Mesh {
+    let mesh = terrain();
+    let half = |t: &[u32; 3]| u32::from(mesh.positions()[t[0] as usize].x >= 0.0);
+    Mesh::new(MeshParts {
+        positions: mesh.positions().to_vec(),
+        triangles: mesh.triangles().to_vec(),
+        materials: Materials {
+            names: vec!["left".into(), "right".into()],
+            of_triangle: mesh.triangles().iter().map(half).collect(),
+            libraries: Vec::new(),
+        },
+        precision: mesh.precision(),
+        ..MeshParts::default()
+    })
+    .expect("the mesh was valid before")
+}
+
+fn image(own: &ImageOptions, target: Amount) -> Options {
+    Options {
+        method: MethodOptions::Image(own.clone()),
+        schedule: own.preset.schedule(),
+        ..Options::memoryless(target)
+    }
+}
+
+/// The mesh, how many collapses and evaluations led to it, and the bits of its error.
+fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
+    collector.mesh(name, &outcome.mesh);
+    let mut text = format!("{}", outcome.mesh.triangles().len());
+    for phase in &outcome.phases {
+        let c = &phase.counters;
+        text += &format!(" {}-{}-{}", phase.method, c.collapses, c.evaluations);
+    }
+    if let Some(rms) = outcome.error_rms {
+        text += &format!(" {}", bits(&[rms]));
+    }
+    collector.text(&format!("{name}/run"), text);
+}
+
+fn bits(numbers: &[f64]) -> String {
+    let hex = numbers.iter().map(|x| format!("{:016x}", x.to_bits()));
+    hex.collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,209 @@
+//! The golden set: that it holds, and that it would notice if it did not.
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use lodmark::{
+    Silent,
+    mesh::generate,
+    num::fixed::SubpixelBits,
+    output::{
+        golden::{GROUPS, Group, Item, Mismatch, RECORD_NAME, Record, bless, check, picture_path},
+        hash::plane_sha256,
+        png::{self, Picture},
+    },
+    raster::{self, Plane, Scene},
+    view::{Sphere, ViewSet},
+};
+
+fn checked_in() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/golden"))
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
+}
+
+/// Items that cost nothing, one of them with a picture.
+fn few_items() -> Vec<Item> {
+    let plane = Plane::new(4, 2, (0..8).map(|i| i * 30).collect()).expect("4 * 2 values");
+    let item = |name: &str, value: &str, picture| Item {
+        name: name.into(),
+        value: value.into(),
+        picture,
+    };
+    vec![
+        item("a/one", "1 2 3", None),
+        item(
+            "a/two",
+            &plane_sha256(&plane),
+            Some(Picture::Grey(plane.clone())),
+        ),
+        item("ab/three", "x", None),
+    ]
+}
+
+fn names(mismatches: &[Mismatch]) -> Vec<&str> {
+    mismatches.iter().map(|m| m.name.as_str()).collect()
+}
+
+#[test]
+fn a_result_that_changed_a_bit_is_named() {
+    let items = Group::all(&Silent).expect("every case runs");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+    let mismatches = check(checked_in(), &items, &out).expect("the goldens are readable");
+    let lines: Vec<String> = mismatches.iter().map(Mismatch::to_string).collect();
+    assert!(
+        mismatches.is_empty(),
+        "see {}; if the change is meant, `cargo run --release -- golden bless`, and say why in the commit:\n{}",
+        out.display(),
+        lines.join("\n")
+    );
+    let distinct: BTreeSet<&str> = items.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(distinct.len(), items.len(), "names are unique");
+    let groups: BTreeSet<&str> = GROUPS.iter().map(|g| g.name).collect();
+    for item in &items {
+        let (group, _) = item.name.split_once('/').expect("a name has a group");
+        assert!(groups.contains(group), "{}", item.name);
+        assert!(!item.value.is_empty() && !item.value.contains('\n'));
+    }
+}
+
+#[test]
+fn the_program_embeds_other_goldens_than_the_file() {
+    let text = fs::read_to_string(checked_in().join(RECORD_NAME)).expect("readable");
+    let embedded = Record::embedded().expect("a record");
+    assert_eq!(embedded.to_text(), text);
+    assert!(embedded.len() > 300);
+}
+
+#[test]
+fn one_bit_of_one_sample_goes_unnoticed() {
+    let mesh = generate::probe();
+    let sphere = Sphere::of_mesh(&mesh).expect("it has triangles");
+    let set = ViewSet::costs(&sphere).expect("views");
+    let scene = Scene::of(&mesh);
+    let luma = raster::luma(&scene, &set.views[3], &set).tones;
+    let before = plane_sha256(&luma);
+    for (at, bit) in [(0, 0), (luma.values().len() - 1, 7), (32_768, 3)] {
+        let mut changed = luma.clone();
+        changed.values_mut()[at] ^= 1 << bit;
+        assert_ne!(plane_sha256(&changed), before, "bit {bit} of sample {at}");
+    }
+    // The sub-pixel grid is all that differs: a change far below what eyes see.
+    let fine = set.clone().with_subpixel(SubpixelBits::Sixteen);
+    let other = raster::keys(&scene, &fine.views[3], &fine);
+    let keys = raster::keys(&scene, &set.views[3], &set);
+    assert_ne!(
+        plane_sha256(&raster::depths(&keys)),
+        plane_sha256(&raster::depths(&other))
+    );
+}
+
+#[test]
+fn a_planted_change_of_any_golden_goes_unnoticed() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let items = few_items();
+    bless(folder.path(), &items).expect("target is writable");
+    assert_eq!(
+        check(folder.path(), &items, &out).expect("readable"),
+        vec![]
+    );
+    assert!(!out.exists(), "nothing to show");
+    for changed in 0..items.len() {
+        let mut planted = items.clone();
+        let last = planted[changed].value.pop().expect("a value");
+        planted[changed].value.push(char::from(last as u8 ^ 1));
+        let found = check(folder.path(), &planted, &out).expect("readable");
+        assert_eq!(names(&found), [items[changed].name.as_str()]);
+        assert_eq!(found[0].expected.as_ref(), Some(&items[changed].value));
+        assert_eq!(found[0].actual.as_ref(), Some(&planted[changed].value));
+    }
+}
+
+#[test]
+fn a_pixel_that_changed_by_one_level_is_not_shown() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let mut items = few_items();
+    bless(folder.path(), &items).expect("target is writable");
+    let Some(Picture::Grey(plane)) = &mut items[1].picture else {
+        panic!("a grey picture");
+    };
+    plane.values_mut()[5] += 1;
+    items[1].value = plane_sha256(plane);
+    let found = check(folder.path(), &items, &out).expect("readable");
+    assert_eq!(names(&found), ["a/two"]);
+    let text = found[0].to_string();
+    assert!(
+        text.contains("1 of 8 pixels differ, first at (1, 1): expected 150, found 151"),
+        "{text}"
+    );
+    let strip = png::read(&picture_path(&out, "a/two")).expect("a strip was written");
+    assert!(strip.into_luma().width() > 3 * 4);
+    let json = fs::read_to_string(out.join("mismatches.json")).expect("a report was written");
+    assert!(json.contains("a/two") && json.contains(&items[1].value));
+}
+
+#[test]
+fn a_picture_that_no_longer_shows_what_is_hashed_passes() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let items = few_items();
+    bless(folder.path(), &items).expect("target is writable");
+    let path = picture_path(folder.path(), "a/two");
+    let other = Plane::filled(4, 2, 9);
+    png::write_grey(&path, &other).expect("target is writable");
+    let found = check(folder.path(), &items, &out).expect("readable");
+    assert_eq!(names(&found), ["a/two.png"]);
+    fs::remove_file(&path).expect("it exists");
+    let found = check(folder.path(), &items, &out).expect("readable");
+    assert_eq!(names(&found), ["a/two.png"]);
+    assert!(found[0].to_string().contains("golden bless"));
+    bless(folder.path(), &items).expect("target is writable");
+    assert!(
+        check(folder.path(), &items, &out)
+            .expect("readable")
+            .is_empty()
+    );
+}
+
+#[test]
+fn a_golden_that_is_missing_or_left_over_passes() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let items = few_items();
+    let nothing = check(folder.path(), &items, &out).expect("an empty folder is no error");
+    assert_eq!(names(&nothing), ["a/one", "a/two", "ab/three", "a/two.png"]);
+    for mismatch in &nothing {
+        assert!(
+            mismatch.to_string().contains("`lodmark golden bless`"),
+            "{mismatch}"
+        );
+    }
+    bless(folder.path(), &items).expect("target is writable");
+    let found = check(folder.path(), &items[1..], &out).expect("readable");
+    assert_eq!(names(&found), ["a/one"]);
+    assert_eq!(found[0].actual, None);
+    let record = Record::of(&items);
+    assert_eq!(record.group("a").len(), 2, "`ab/three` is of another group");
+    assert_eq!(Record::parse(&record.to_text()), Ok(record));
+}
+
+#[test]
+fn a_damaged_record_is_read_with_gaps() {
+    assert!(
+        Record::parse("a/one\n")
+            .expect_err("no value")
+            .contains("line 1")
+    );
+    assert!(
+        Record::parse("# x\na/one 1\na/one 1\n")
+            .expect_err("twice")
+            .contains("line 3 repeats `a/one`")
+    );
+    let folder = folder();
+    fs::write(folder.path().join(RECORD_NAME), "nonsense\n").expect("target is writable");
+    let refused = check(folder.path(), &few_items(), folder.path()).expect_err("damaged");
+    assert_eq!(refused.exit_code(), 3);
+}
