@@ -1,6 +1,8 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod cli;
+mod compare;
 mod generate;
 mod hostile;
 mod io;
