@@ -1,5 +1,6 @@
 //! Every integration test in one binary: a module per stage.
 
+mod appearance;
 mod architecture;
 mod cli;
 mod compare;
