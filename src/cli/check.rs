@@ -11,19 +11,22 @@ pub(super) struct Options {
     /// The mesh: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
+    /// Do not unite vertices with equal positions
+    #[arg(long)]
+    no_weld: bool,
 }
 
 pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    let mesh = source::read(&options.input, false, terminal)?;
+    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
     let findings = Findings::of(&mesh);
-    println!("{}", findings.report());
+    print!("{}", findings.report());
     report(
         common,
         "check",
         serde_json::json!({ "input": options.input }),
         &findings,
     )?;
-    Ok(if findings.is_clean() {
+    Ok(if findings.clean {
         Verdict::Good
     } else {
         Verdict::Negative

@@ -9,9 +9,12 @@
 )]
 
 mod check;
+mod compare;
+mod demo;
 mod golden;
 mod inspect;
 mod render;
+mod replay;
 mod selfcheck;
 mod simplify;
 mod source;
@@ -61,11 +64,14 @@ struct Common {
 #[derive(Debug, Subcommand)]
 enum Command {
     Simplify(simplify::Options),
+    Replay(replay::Options),
     Render(render::Options),
+    Compare(compare::Options),
     Check(check::Options),
     Inspect(inspect::Options),
     Golden(golden::Options),
     Selfcheck(selfcheck::Options),
+    Demo(demo::Options),
     /// Verbs of the plan that this version does not have yet.
     #[command(external_subcommand)]
     Other(Vec<String>),
@@ -131,10 +137,13 @@ fn run(arguments: Arguments) -> Result<Verdict> {
     let terminal = Terminal::new(common.quiet);
     let verdict = match arguments.command {
         Command::Simplify(options) => simplify::run(&options, common, &terminal),
+        Command::Replay(options) => replay::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
+        Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
+        Command::Demo(options) => demo::run(&options, common, &terminal),
         Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),
         Command::Other(words) => {
             let name = words.first().cloned().unwrap_or_default();

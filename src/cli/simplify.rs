@@ -218,10 +218,12 @@ impl Options {
             }
         };
         self.refuse_foreign(&method)?;
-        let mut options = RunOptions {
-            method,
-            ..RunOptions::image(target)
+        let mut options = match method {
+            MethodOptions::Image(_) => RunOptions::image(target),
+            MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
+            MethodOptions::Quadric(_) => RunOptions::quadric(target),
         };
+        options.method = method;
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
         options.schedule = match (self.evaluation, self.method) {
@@ -229,7 +231,7 @@ impl Options {
             (Some(Evaluation::Semi), _) => Schedule::Semi,
             (Some(Evaluation::Eager), _) => Schedule::Eager,
             (None, Method::Image) => preset.schedule(),
-            (None, _) => Schedule::Lazy,
+            (None, _) => options.schedule,
         };
         options.rules.topology = match self.topology {
             TopologyName::Preserve => Topology::Preserve,

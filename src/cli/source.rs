@@ -14,10 +14,16 @@ pub(super) fn read(path: &Path, weld: bool, terminal: &Terminal) -> Result<Mesh>
     for note in &loaded.notes {
         terminal.say(&format!("{}: {note}", path.display()));
     }
-    if !weld {
-        return Ok(loaded.mesh);
-    }
-    let welded = mesh::weld(loaded.mesh);
+    Ok(if weld {
+        welded(path, loaded.mesh, terminal)
+    } else {
+        loaded.mesh
+    })
+}
+
+/// A mesh as read from `path`, with vertices whose positions are equal bits united.
+pub(super) fn welded(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
+    let welded = mesh::weld(mesh);
     if welded.merged > 0 {
         terminal.say(&format!(
             "{}: welded {} vertices at the place of another one",
@@ -25,7 +31,7 @@ pub(super) fn read(path: &Path, weld: bool, terminal: &Terminal) -> Result<Mesh>
             welded.merged
         ));
     }
-    Ok(welded.mesh)
+    welded.mesh
 }
 
 /// Refuses a mesh that shows nothing.

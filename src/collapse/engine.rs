@@ -63,6 +63,9 @@ impl Observer for () {
 /// Edges in a task of the first, complete evaluation.
 const CHUNK: usize = 1024;
 
+/// Tasks between two looks at the progress of the first evaluation.
+const TASKS: usize = 64;
+
 /// Collapses between two looks at the progress.
 const REPORT_EVERY: u64 = 256;
 
@@ -155,10 +158,9 @@ impl<M: Method> Engine<M> {
             return Ok(End::TargetReached);
         }
         let total = (start - target.triangles) as u64;
-        progress.step("evaluate", 0, u64::from(self.live.edge_ids()))?;
         let mut queue = match self.queue.take() {
             Some(queue) => queue,
-            None => self.first_queue(),
+            None => self.first_queue(progress)?,
         };
         let end = loop {
             if self.live.triangle_count() <= target.triangles {
@@ -217,14 +219,14 @@ impl<M: Method> Engine<M> {
         // Every edge whose ring has a face of the patch ends at the new vertex or at a vertex of the link.
         let mut touched = std::mem::take(&mut self.touched);
         touched.clear();
-        touched.extend(self.live.edges_at(vertex));
-        for spoke in &self.ring.spokes {
-            touched.extend(self.live.edges_at(spoke.vertex));
-        }
-        touched.sort_unstable();
-        touched.dedup();
-        for &e in &touched {
-            queue.stale(&self.live, e);
+        queue.next_round();
+        let spokes = self.ring.spokes.iter().map(|s| s.vertex);
+        for v in std::iter::once(vertex).chain(spokes) {
+            for e in self.live.edges_at(v) {
+                if queue.stale(&self.live, e) {
+                    touched.push(e);
+                }
+            }
         }
         self.counters.evaluations_if_eager += touched.len() as u64;
         let live = &self.live;
@@ -236,6 +238,7 @@ impl<M: Method> Engine<M> {
             Schedule::Eager => {}
         }
         if !touched.is_empty() {
+            touched.sort_unstable();
             self.refresh(queue, &touched);
         }
         self.touched = touched;
@@ -271,19 +274,24 @@ impl<M: Method> Engine<M> {
         queue.evaluated(&self.live, id, outcome.ok());
     }
 
-    fn first_queue(&mut self) -> Queue {
+    /// Evaluates every edge, block by block, so that the user hears of it and can stop it.
+    fn first_queue(&mut self, progress: &dyn Progress) -> Result<Queue> {
         let ids = self.live_edges();
-        let outcomes = self.evaluate_all(&ids, CHUNK.min(self.method.evaluations_per_task()));
+        let per_task = CHUNK.min(self.method.evaluations_per_task());
         self.counters.evaluations += ids.len() as u64;
         self.counters.evaluations_if_eager += ids.len() as u64;
         let mut evaluated = Vec::with_capacity(ids.len());
-        for (id, outcome) in ids.into_iter().zip(outcomes) {
-            match outcome {
-                Ok(proposal) => evaluated.push((id, proposal)),
-                Err(refusal) => self.counters.refusals.add(refusal),
+        for (i, block) in ids.chunks(per_task * TASKS).enumerate() {
+            let done = i * per_task * TASKS;
+            progress.step("evaluate", done as u64, ids.len() as u64)?;
+            for (&id, outcome) in block.iter().zip(self.evaluate_all(block, per_task)) {
+                match outcome {
+                    Ok(proposal) => evaluated.push((id, proposal)),
+                    Err(refusal) => self.counters.refusals.add(refusal),
+                }
             }
         }
-        Queue::new(&self.live, evaluated)
+        Ok(Queue::new(&self.live, evaluated))
     }
 
     fn live_edges(&self) -> Vec<u32> {

@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 use super::{LiveMesh, Observer, Patch};
 use crate::{
     Error, Result,
-    mesh::{ChannelKind, Mesh},
+    mesh::{Mesh, content_digest},
     num::{Frame, Precision},
 };
 
@@ -26,7 +26,7 @@ const COLLAPSE: u8 = 1;
 pub struct Header {
     /// Version of the crate that recorded it.
     pub version: String,
-    /// [`content_sha256`] of the input.
+    /// [`content_digest`] of the input.
     pub input: [u8; 32],
     /// The resolved options, as JSON.
     pub options: String,
@@ -314,7 +314,7 @@ impl Recorder {
             history: History {
                 header: Header {
                     version: env!("CARGO_PKG_VERSION").into(),
-                    input: content_sha256(mesh),
+                    input: content_digest(mesh),
                     options: String::new(),
                     precision: mesh.precision(),
                     frame,
@@ -357,56 +357,4 @@ impl Observer for Recorder {
             rows_end: history.rows.len(),
         });
     }
-}
-
-/// SHA-256 of everything a mesh says: positions, triangles, attributes, materials, in their order.
-///
-/// Numbers are little-endian, lists start with their length as `u64`; positions and values are `f64` bits.
-#[must_use]
-pub fn content_sha256(mesh: &Mesh) -> [u8; 32] {
-    let mut sha = Sha256::new();
-    let length = |sha: &mut Sha256, n: usize| sha.update((n as u64).to_le_bytes());
-    sha.update([u8::from(mesh.precision() == Precision::F64)]);
-    length(&mut sha, mesh.positions().len());
-    for p in mesh.positions() {
-        for x in p.to_array() {
-            sha.update(x.to_bits().to_le_bytes());
-        }
-    }
-    let triples = |sha: &mut Sha256, triples: &[[u32; 3]]| {
-        length(sha, triples.len());
-        for i in triples.iter().flatten() {
-            sha.update(i.to_le_bytes());
-        }
-    };
-    triples(&mut sha, mesh.triangles());
-    let attributes = mesh.attributes();
-    length(&mut sha, attributes.channels().len());
-    for channel in attributes.channels() {
-        let code = match channel.kind {
-            ChannelKind::Normal => [0, 0],
-            ChannelKind::TexCoord(set) => [1, set],
-            ChannelKind::Color => [2, 0],
-            ChannelKind::ColorAlpha => [3, 0],
-        };
-        sha.update(code);
-    }
-    length(&mut sha, attributes.values().len());
-    for x in attributes.values() {
-        sha.update(x.to_bits().to_le_bytes());
-    }
-    triples(&mut sha, attributes.corners());
-    let materials = mesh.materials();
-    for names in [&materials.names, &materials.libraries] {
-        length(&mut sha, names.len());
-        for name in names {
-            length(&mut sha, name.len());
-            sha.update(name.as_bytes());
-        }
-    }
-    length(&mut sha, materials.of_triangle.len());
-    for m in &materials.of_triangle {
-        sha.update(m.to_le_bytes());
-    }
-    sha.finalize().into()
 }

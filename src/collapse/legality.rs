@@ -142,8 +142,9 @@ impl Serialize for Refusals {
 /// # Errors
 /// The first rule that forbids the collapse altogether.
 pub fn anchor(live: &LiveMesh, ring: &Ring, rules: Rules) -> Result<Anchor, Refusal> {
-    let removed = ring.faces.iter().filter(|f| !f.survives).count();
-    if removed == live.triangle_count() {
+    // Where faces are left elsewhere, the ring may vanish as a whole.
+    let everything = live.triangle_count() <= ring.faces.len();
+    if everything && !ring.faces.iter().any(|f| f.survives) {
         return Err(Refusal::LastTriangle);
     }
     if rules.topology == Topology::Preserve {

@@ -1,26 +1,32 @@
 //! The mesh that shrinks: faces, corner lists and edges with stable ids, in frame units.
 //!
-//! Flat `u32` arrays. The faces around a vertex are a list linked through their corners, the edges at a vertex a list
-//! linked through their ends: a patch allocates nothing. Lists have no meaningful order; whoever sums over them sorts
-//! by id first ([`Ring`](super::Ring) does). Nothing is assumed about manifoldness: an edge counts its faces.
+//! Flat `u32` arrays; the faces and edges at a vertex are short lists in a pool. Lists have no meaningful order;
+//! whoever sums over them sorts by id first ([`Ring`](super::Ring) does). Nothing is assumed about manifoldness: an
+//! edge counts its faces.
 
 use glam::DVec3;
 
-use super::{Move, Patch, PatchFace, wedge::WedgeRows};
+use super::{Move, Patch, PatchFace, lists::Lists, wedge::WedgeRows};
 use crate::{
-    mesh::{Attributes, Materials, Mesh, MeshParts},
+    mesh::{Materials, Mesh},
     num::{Frame, Precision},
 };
 
 /// No vertex, face, wedge, edge or corner.
 pub const NONE: u32 = u32::MAX;
 
-/// An edge: its ends, the next edge in the list of each end, and its number of faces.
+/// An edge: its ends and its number of faces.
 #[derive(Clone, Copy, Debug)]
 struct EdgeRecord {
     ends: [u32; 2],
-    next: [u32; 2],
     faces: u32,
+}
+
+/// An edge as one of its ends sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Incident {
+    other: u32,
+    edge: u32,
 }
 
 /// Edges that a patch made and unmade; the queue follows them.
@@ -35,20 +41,19 @@ pub struct Changes {
 /// A mesh under surgery. Triangle and vertex ids are those of the mesh it was made from, for ever.
 #[derive(Clone, Debug, Default)]
 pub struct LiveMesh {
-    frame: Frame,
-    precision: Precision,
-    positions: Vec<DVec3>,
-    faces: Vec<[u32; 3]>,
+    pub(super) frame: Frame,
+    pub(super) precision: Precision,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) faces: Vec<[u32; 3]>,
     live: usize,
-    first_corner: Vec<u32>,
-    next_corner: Vec<u32>,
+    faces_at: Lists<u32>,
     edges: Vec<EdgeRecord>,
     free_edges: Vec<u32>,
-    first_edge: Vec<u32>,
+    edges_at: Lists<Incident>,
     locked: Vec<bool>,
-    rows: WedgeRows,
-    wedges: Vec<[u32; 3]>,
-    materials: Materials,
+    pub(super) rows: WedgeRows,
+    pub(super) wedges: Vec<[u32; 3]>,
+    pub(super) materials: Materials,
     may_have_features: bool,
 }
 
@@ -59,17 +64,20 @@ impl LiveMesh {
     #[must_use]
     pub fn new(mesh: &Mesh, frame: Frame) -> Self {
         let (vertices, triangles) = (mesh.positions().len(), mesh.triangles().len());
+        let mut valences = vec![0; vertices];
+        for &v in mesh.triangles().iter().flatten() {
+            valences[v as usize] += 1;
+        }
         let mut live = Self {
             frame,
             precision: mesh.precision(),
             positions: mesh.positions().iter().map(|&p| frame.enter(p)).collect(),
             faces: vec![[NONE; 3]; triangles],
             live: 0,
-            first_corner: vec![NONE; vertices],
-            next_corner: vec![NONE; 3 * triangles],
+            faces_at: Lists::with_room(&valences),
             edges: Vec::with_capacity(triangles / 2 * 3 + 64),
             free_edges: Vec::new(),
-            first_edge: vec![NONE; vertices],
+            edges_at: Lists::with_room(&valences),
             locked: vec![false; vertices],
             rows: WedgeRows::of(mesh.attributes()),
             wedges: mesh.attributes().corners().to_vec(),
@@ -230,14 +238,7 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such vertex.
     pub fn triangles_at(&self, vertex: u32) -> impl Iterator<Item = u32> {
-        let mut corner = self.first_corner[vertex as usize];
-        std::iter::from_fn(move || {
-            (corner != NONE).then(|| {
-                let face = corner / 3;
-                corner = self.next_corner[corner as usize];
-                face
-            })
-        })
+        self.faces_at.of(vertex).iter().copied()
     }
 
     /// The edges at a vertex, in no particular order.
@@ -245,15 +246,7 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such vertex.
     pub fn edges_at(&self, vertex: u32) -> impl Iterator<Item = u32> {
-        let mut edge = self.first_edge[vertex as usize];
-        std::iter::from_fn(move || {
-            (edge != NONE).then(|| {
-                let now = edge;
-                let record = &self.edges[now as usize];
-                edge = record.next[usize::from(record.ends[1] == vertex)];
-                now
-            })
-        })
+        self.edges_at.of(vertex).iter().map(|i| i.edge)
     }
 
     /// The ends of an edge, the smaller first; `None` where the id is not in use.
@@ -282,10 +275,8 @@ impl LiveMesh {
     /// Where there is no such vertex.
     #[must_use]
     pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
-        self.edges_at(a).find(|&e| {
-            let ends = self.edges[e as usize].ends;
-            ends[0] == b || ends[1] == b
-        })
+        let incident = self.edges_at.of(a).iter().find(|i| i.other == b);
+        incident.map(|i| i.edge)
     }
 
     /// Face `id` as it is now, for a patch.
@@ -330,11 +321,11 @@ impl LiveMesh {
             (Some(old), None) => self.unlink_face(old.id),
             (None, Some(new)) => self.link_face(new.id, new.corners),
             (Some(old), Some(new)) => {
+                self.faces[old.id as usize] = new.corners;
                 for k in 0..3 {
                     if old.corners[k] != new.corners[k] {
-                        self.unlink_corner(3 * old.id + k as u32, old.corners[k]);
-                        self.faces[old.id as usize][k] = new.corners[k];
-                        self.link_corner(3 * old.id + k as u32, new.corners[k]);
+                        self.faces_at.remove(old.corners[k], old.id);
+                        self.faces_at.push(new.corners[k], old.id);
                     }
                 }
             }
@@ -378,82 +369,17 @@ impl LiveMesh {
         self.rows.truncate(row_values);
     }
 
-    /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and
-    /// wedges are kept.
-    ///
-    /// # Errors
-    /// A sentence, should a promise of [`Mesh`] not hold (a bug).
-    pub fn to_mesh(&self) -> Result<Mesh, String> {
-        let ids: Vec<u32> = (0..self.triangle_ids())
-            .filter(|&t| self.triangle(t).is_some())
-            .collect();
-        let corners = ids.iter().map(|&t| self.faces[t as usize]);
-        let (triangles, vertices) = compacted(corners, self.positions.len());
-        let positions = vertices
-            .iter()
-            .map(|&v| self.frame.leave(self.position(v)))
-            .collect();
-        let attributes = if self.wedges.is_empty() {
-            Attributes::default()
-        } else {
-            let corners = ids.iter().map(|&t| self.wedges[t as usize]);
-            let (corners, wedges) = compacted(corners, self.wedge_count() as usize);
-            let values = wedges
-                .iter()
-                .flat_map(|&w| self.rows.row(w).iter().copied())
-                .collect();
-            Attributes::new(&self.rows.kinds(), values, corners)?
-        };
-        let of_triangle = if self.materials.of_triangle.is_empty() {
-            Vec::new()
-        } else {
-            ids.iter().map(|&t| self.material(t)).collect()
-        };
-        Mesh::new(MeshParts {
-            positions,
-            triangles,
-            attributes,
-            materials: Materials {
-                of_triangle,
-                ..self.materials.clone()
-            },
-            precision: self.precision,
-        })
-    }
-
-    fn link_corner(&mut self, corner: u32, vertex: u32) {
-        self.next_corner[corner as usize] = self.first_corner[vertex as usize];
-        self.first_corner[vertex as usize] = corner;
-    }
-
-    fn unlink_corner(&mut self, corner: u32, vertex: u32) {
-        let next = self.next_corner[corner as usize];
-        let mut at = self.first_corner[vertex as usize];
-        if at == corner {
-            self.first_corner[vertex as usize] = next;
-            return;
-        }
-        while at != NONE {
-            let after = self.next_corner[at as usize];
-            if after == corner {
-                self.next_corner[at as usize] = next;
-                return;
-            }
-            at = after;
-        }
-    }
-
     fn link_face(&mut self, id: u32, corners: [u32; 3]) {
         self.faces[id as usize] = corners;
-        for (k, v) in corners.into_iter().enumerate() {
-            self.link_corner(3 * id + k as u32, v);
+        for v in corners {
+            self.faces_at.push(v, id);
         }
         self.live += 1;
     }
 
     fn unlink_face(&mut self, id: u32) {
-        for (k, v) in self.faces[id as usize].into_iter().enumerate() {
-            self.unlink_corner(3 * id + k as u32, v);
+        for v in self.faces[id as usize] {
+            self.faces_at.remove(v, id);
         }
         self.faces[id as usize] = [NONE; 3];
         self.live -= 1;
@@ -465,11 +391,7 @@ impl LiveMesh {
             return;
         }
         let ends = [a.min(b), a.max(b)];
-        let record = EdgeRecord {
-            ends,
-            next: ends.map(|v| self.first_edge[v as usize]),
-            faces: 1,
-        };
+        let record = EdgeRecord { ends, faces: 1 };
         let id = match self.free_edges.pop() {
             Some(id) => {
                 self.edges[id as usize] = record;
@@ -480,8 +402,8 @@ impl LiveMesh {
                 (self.edges.len() - 1) as u32
             }
         };
-        for v in ends {
-            self.first_edge[v as usize] = id;
+        for (v, other) in [(a, b), (b, a)] {
+            self.edges_at.push(v, Incident { other, edge: id });
         }
         created.push(id);
     }
@@ -494,32 +416,12 @@ impl LiveMesh {
         if self.edges[id as usize].faces > 0 {
             return;
         }
-        for v in [a, b] {
-            self.unlink_edge(id, v);
+        for (v, other) in [(a, b), (b, a)] {
+            self.edges_at.remove(v, Incident { other, edge: id });
         }
         self.edges[id as usize].ends = [NONE; 2];
         self.free_edges.push(id);
         deleted.push(id);
-    }
-
-    fn unlink_edge(&mut self, id: u32, vertex: u32) {
-        let side = |record: &EdgeRecord| usize::from(record.ends[1] == vertex);
-        let record = self.edges[id as usize];
-        let next = record.next[side(&record)];
-        let mut at = self.first_edge[vertex as usize];
-        if at == id {
-            self.first_edge[vertex as usize] = next;
-            return;
-        }
-        while at != NONE {
-            let record = &mut self.edges[at as usize];
-            let k = side(record);
-            if record.next[k] == id {
-                record.next[k] = next;
-                return;
-            }
-            at = record.next[k];
-        }
     }
 }
 
@@ -541,22 +443,4 @@ fn pair(
         j += usize::from(new.is_some());
         visit(old, new);
     }
-}
-
-/// Triples renumbered to the indices below `count` that they use, and those indices in ascending order.
-fn compacted(
-    triples: impl Iterator<Item = [u32; 3]> + Clone,
-    count: usize,
-) -> (Vec<[u32; 3]>, Vec<u32>) {
-    let mut new = vec![NONE; count];
-    for v in triples.clone().flatten() {
-        new[v as usize] = 0;
-    }
-    let used: Vec<u32> = (0..count as u32)
-        .filter(|&v| new[v as usize] == 0)
-        .collect();
-    for (i, &v) in used.iter().enumerate() {
-        new[v as usize] = i as u32;
-    }
-    (triples.map(|t| t.map(|v| new[v as usize])).collect(), used)
 }

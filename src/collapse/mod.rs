@@ -5,10 +5,12 @@
 //! judged under the very ids it would have afterwards. [`legality`] decides which collapses are allowed, a
 //! [`Method`] where the new vertex lies and what it costs, and the [`Engine`] which edge is next.
 
+mod compact;
 mod engine;
 mod heap;
 mod history;
 pub mod legality;
+mod lists;
 mod live;
 mod method;
 mod patch;
@@ -19,7 +21,7 @@ pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
 pub use heap::{Heap, Key};
-pub use history::{Collapse, Entry, Header, History, Recorder, content_sha256};
+pub use history::{Collapse, Entry, Header, History, Recorder};
 pub use legality::{Refusal, Refusals, Rules, Topology};
 pub use live::{Changes, LiveMesh, NONE};
 pub use method::{Admitted, Method, Proposal, Site};

@@ -17,18 +17,25 @@ pub enum Schedule {
     Eager,
 }
 
+/// What is looked at for every edge around every collapse; kept apart from the proposals to be small.
 #[derive(Clone, Copy, Debug, Default)]
-struct State {
-    /// The last legal proposal; stale while `dirty`.
-    proposal: Option<Proposal>,
+struct Mark {
+    /// The round in which the edge was last marked.
+    round: u32,
+    /// Its ring changed since it was evaluated.
     dirty: bool,
+    /// It is in the heap.
+    queued: bool,
 }
 
 /// Edges in the order of their keys. An illegal edge is in nobody's way: it comes back when its ring changes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Queue {
     heap: Heap,
-    states: Vec<State>,
+    marks: Vec<Mark>,
+    /// The last legal proposal of every edge; stale where it is marked dirty.
+    proposals: Vec<Option<Proposal>>,
+    round: u32,
 }
 
 /// What comes to the front.
@@ -41,79 +48,101 @@ pub(super) enum Front {
 
 impl Queue {
     pub(super) fn new(live: &LiveMesh, evaluated: Vec<(u32, Proposal)>) -> Self {
-        let mut states = vec![State::default(); live.edge_ids() as usize];
+        let ids = live.edge_ids() as usize;
+        let mut queue = Self {
+            marks: vec![Mark::default(); ids],
+            proposals: vec![None; ids],
+            ..Self::default()
+        };
         let mut entries = Vec::with_capacity(evaluated.len());
         for (id, proposal) in evaluated {
-            states[id as usize].proposal = Some(proposal);
-            entries.extend(key(live, id, &proposal).map(|key| (key, id)));
+            if let Some(key) = key(live, id, &proposal) {
+                queue.proposals[id as usize] = Some(proposal);
+                queue.marks[id as usize].queued = true;
+                entries.push((key, id));
+            }
         }
-        Self {
-            heap: Heap::of(entries),
-            states,
-        }
+        queue.heap = Heap::of(entries);
+        queue
     }
 
     /// The edge with the smallest key; it stays in the queue.
     pub(super) fn front(&mut self) -> Option<Front> {
         let (_, id) = self.heap.peek()?;
-        let state = self.states[id as usize];
-        Some(match state.proposal {
-            Some(proposal) if !state.dirty => Front::Ready(id, proposal),
+        Some(match self.proposals[id as usize] {
+            Some(proposal) if !self.marks[id as usize].dirty => Front::Ready(id, proposal),
             _ => Front::Stale(id),
         })
     }
 
     /// Records the outcome of an evaluation.
     pub(super) fn evaluated(&mut self, live: &LiveMesh, id: u32, proposal: Option<Proposal>) {
-        self.states[id as usize].dirty = false;
+        self.grow(id);
+        let mark = &mut self.marks[id as usize];
+        mark.dirty = false;
         match proposal.and_then(|p| Some((p, key(live, id, &p)?))) {
             Some((proposal, key)) => {
-                self.states[id as usize].proposal = Some(proposal);
+                mark.queued = true;
+                self.proposals[id as usize] = Some(proposal);
                 self.heap.set(id, key);
             }
             None => {
+                mark.queued = false;
                 self.heap.remove(id);
             }
         }
     }
 
-    /// The edge's ring changed. It waits under its old cost, or at the front where it never had one.
-    pub(super) fn stale(&mut self, live: &LiveMesh, id: u32) {
+    /// The next commit begins.
+    pub(super) fn next_round(&mut self) {
+        self.round = self.round.wrapping_add(1);
+    }
+
+    /// The edge's ring changed. It waits under its old cost, or at the front where it never had one. False where it
+    /// was already marked in this round.
+    pub(super) fn stale(&mut self, live: &LiveMesh, id: u32) -> bool {
         self.grow(id);
-        self.states[id as usize].dirty = true;
-        if self.heap.key(id).is_none() {
-            let Some(ends) = live.edge(id) else { return };
-            let old = self.states[id as usize].proposal;
-            let key = old.and_then(|p| key(live, id, &p));
-            self.heap.set(id, key.unwrap_or(Key::first(ends)));
+        let mark = &mut self.marks[id as usize];
+        if mark.round == self.round {
+            return false;
         }
+        mark.round = self.round;
+        mark.dirty = true;
+        if !mark.queued {
+            let Some(ends) = live.edge(id) else {
+                return false;
+            };
+            mark.queued = true;
+            let old = self.proposals[id as usize].and_then(|p| key(live, id, &p));
+            self.heap.set(id, old.unwrap_or(Key::first(ends)));
+        }
+        true
     }
 
     /// Forgets an edge whose id is no longer in use.
     pub(super) fn forget(&mut self, id: u32) {
         self.heap.remove(id);
-        if let Some(state) = self.states.get_mut(id as usize) {
-            *state = State::default();
+        if let Some(mark) = self.marks.get_mut(id as usize) {
+            *mark = Mark::default();
+            self.proposals[id as usize] = None;
         }
     }
 
     /// The last legal proposal of an edge.
     pub(super) fn known(&self, id: u32) -> Option<Proposal> {
-        self.states.get(id as usize)?.proposal
+        *self.proposals.get(id as usize)?
     }
 
     /// Gives a new edge the cost of the one it replaces, until it is evaluated.
     pub(super) fn inherit(&mut self, id: u32, proposal: Option<Proposal>) {
         self.grow(id);
-        self.states[id as usize] = State {
-            proposal,
-            dirty: true,
-        };
+        self.proposals[id as usize] = proposal;
     }
 
     fn grow(&mut self, id: u32) {
-        if self.states.len() <= id as usize {
-            self.states.resize(id as usize + 1, State::default());
+        if self.marks.len() <= id as usize {
+            self.marks.resize(id as usize + 1, Mark::default());
+            self.proposals.resize(id as usize + 1, None);
         }
     }
 }

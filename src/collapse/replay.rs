@@ -1,9 +1,10 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
 
-use super::{
-    Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring, history::content_sha256,
+use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring};
+use crate::{
+    Error, Result,
+    mesh::{Mesh, content_digest},
 };
-use crate::{Error, Result, mesh::Mesh};
 
 /// What it takes to undo a record.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +33,7 @@ impl<'a> Replay<'a> {
     /// [`Error::Input`] where it is not.
     pub fn new(mesh: &Mesh, history: &'a History) -> Result<Self> {
         let header = history.header();
-        if content_sha256(mesh) != header.input {
+        if content_digest(mesh) != header.input {
             return Err(Error::input(
                 "-",
                 "the history was recorded on another mesh; expected the same file, loaded with the same options",
@@ -148,7 +149,8 @@ impl<'a> Replay<'a> {
         if stride == 0 {
             return Ok(());
         }
-        if entry.corners.len() != self.patch.added.len() || entry.rows.len() % stride != 0 {
+        if entry.corners.len() != self.patch.added.len() || !entry.rows.len().is_multiple_of(stride)
+        {
             return Err("has wedges for another number of faces".into());
         }
         let wedges = u64::from(live.wedge_count()) + (entry.rows.len() / stride) as u64;

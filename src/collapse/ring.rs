@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, NONE, Patch, PatchFace, patch::Move, wedge};
+use super::{LiveMesh, Patch, PatchFace, patch::Move, wedge};
 
 /// Where the rules let the new vertex be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Spoke {
     pub vertex: u32,
     /// Its position.
     pub point: DVec3,
-    /// Number of faces at the edges to the first and to the second end; 0 where there is no such edge.
+    /// Number of different faces at the edges to the first and to the second end; 0 where there is no such edge.
     pub faces: [u32; 2],
     /// True where it forms a face with both ends.
     pub beside: bool,
@@ -103,13 +103,21 @@ pub struct Ring {
     pub spokes: Vec<Spoke>,
     /// Boundary edges at either end, in the order of their faces.
     pub boundary: Vec<BoundaryEdge>,
-    /// Number of faces at the edge.
+    /// Number of different faces at the edge; faces with the same three vertices count once.
     pub edge_faces: u32,
     /// True where the edge is a feature: more than two faces, or attributes or materials differ across it.
     pub edge_feature: bool,
     /// Number of feature edges at each end, the edge itself included.
     pub feature_degree: [u32; 2],
-    sides: Vec<u64>,
+    ids: Vec<u32>,
+    links: Vec<Link>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Link {
+    vertex: u32,
+    faces: [u32; 2],
+    beside: bool,
 }
 
 impl Ring {
@@ -176,19 +184,21 @@ impl Ring {
 
     fn gather_faces(&mut self, live: &LiveMesh) {
         let [u, w] = self.ends;
-        self.sides.clear();
-        self.sides.extend(live.triangles_at(u).map(u64::from));
-        self.sides.extend(live.triangles_at(w).map(u64::from));
-        self.sides.sort_unstable();
-        self.sides.dedup();
+        self.ids.clear();
+        self.ids.extend(live.triangles_at(u));
+        self.ids.extend(live.triangles_at(w));
+        self.ids.sort_unstable();
+        self.ids.dedup();
         self.faces.clear();
         self.edge_faces = 0;
-        for &id in &self.sides {
-            let corners = live.patch_face(id as u32).corners;
+        for &id in &self.ids {
+            let Some(corners) = live.triangle(id) else {
+                continue;
+            };
             let points = corners.map(|v| live.position(v));
             let at = [u, w].map(|end| corners.iter().position(|&v| v == end).unwrap_or(3) as u8);
             let face = RingFace {
-                id: id as u32,
+                id,
                 corners,
                 points,
                 normal: normal(points),
@@ -202,41 +212,65 @@ impl Ring {
 
     fn gather_spokes(&mut self, live: &LiveMesh) {
         let [u, w] = self.ends;
-        self.sides.clear();
+        self.links.clear();
         for face in &self.faces {
+            let beside = face.has_both();
             for v in face.corners {
-                if v != u && v != w {
-                    for (end, &at) in face.at.iter().enumerate() {
-                        if at < 3 {
-                            self.sides.push(u64::from(v) << 1 | end as u64);
-                        }
-                    }
+                if v == u || v == w {
+                    continue;
                 }
-            }
-        }
-        self.sides.sort_unstable();
-        self.spokes.clear();
-        for &side in &self.sides {
-            let (vertex, end) = ((side >> 1) as u32, (side & 1) as usize);
-            if self.spokes.last().is_none_or(|s| s.vertex != vertex) {
-                self.spokes.push(Spoke {
-                    vertex,
-                    point: live.position(vertex),
-                    faces: [0; 2],
-                    beside: false,
-                    feature: [false; 2],
+                // A link has a handful of vertices: looking through it is faster than sorting all sides.
+                let known = self.links.iter().position(|l| l.vertex == v);
+                let at = known.unwrap_or_else(|| {
+                    self.links.push(Link {
+                        vertex: v,
+                        ..Link::default()
+                    });
+                    self.links.len() - 1
                 });
-            }
-            if let Some(spoke) = self.spokes.last_mut() {
-                spoke.faces[end] += 1;
+                let link = &mut self.links[at];
+                link.faces[0] += u32::from(face.at[0] < 3);
+                link.faces[1] += u32::from(face.at[1] < 3);
+                link.beside |= beside;
             }
         }
-        for i in 0..self.faces.len() {
-            if self.faces[i].has_both() {
-                for v in self.faces[i].corners {
-                    if let Some(s) = self.spoke_index(v) {
-                        self.spokes[s].beside = true;
-                    }
+        let beside = self.links.iter().filter(|l| l.beside).count();
+        let crowded = |l: &Link| l.faces[0] > 2 || l.faces[1] > 2;
+        if self.edge_faces as usize > beside || self.links.iter().any(crowded) {
+            self.count_different();
+        }
+        self.links.sort_unstable_by_key(|l| l.vertex);
+        self.spokes.clear();
+        self.spokes.extend(self.links.iter().map(|l| Spoke {
+            vertex: l.vertex,
+            point: live.position(l.vertex),
+            faces: l.faces,
+            beside: l.beside,
+            feature: [false; 2],
+        }));
+    }
+
+    /// Counts again, faces with the same vertices once: a sheet whose every face is there twice (foliage that shows
+    /// both sides) is a sheet, not a mesh of non-manifold edges.
+    fn count_different(&mut self) {
+        let sorted = |f: &RingFace| {
+            let mut corners = f.corners;
+            corners.sort_unstable();
+            corners
+        };
+        self.edge_faces = 0;
+        for link in &mut self.links {
+            link.faces = [0; 2];
+        }
+        for (i, face) in self.faces.iter().enumerate() {
+            if self.faces[..i].iter().any(|f| sorted(f) == sorted(face)) {
+                continue;
+            }
+            self.edge_faces += u32::from(face.has_both());
+            for link in self.links.iter_mut() {
+                if face.corners.contains(&link.vertex) {
+                    link.faces[0] += u32::from(face.at[0] < 3);
+                    link.faces[1] += u32::from(face.at[1] < 3);
                 }
             }
         }
@@ -279,8 +313,16 @@ impl Ring {
 
     /// Faces that get the vertices of an earlier face, which was another face before, do not survive.
     fn mark_duplicates(&mut self) {
-        let common = |s: &Spoke| s.faces[0] > 0 && s.faces[1] > 0;
-        if self.spokes.iter().filter(|s| common(s)).count() < 2 {
+        let common = |v: u32| {
+            let link = self.links.iter().find(|l| l.vertex == v);
+            link.is_some_and(|l| l.faces[0] > 0 && l.faces[1] > 0)
+        };
+        let [u, w] = self.ends;
+        let mut suspects = self.faces.iter().filter(|f| {
+            let mut others = f.corners.iter().filter(|&&v| v != u && v != w);
+            f.survives && others.all(|&v| common(v))
+        });
+        if suspects.nth(1).is_none() {
             return;
         }
         let link = |face: &RingFace| {
@@ -333,32 +375,37 @@ impl Ring {
     }
 
     /// True where the faces at an end do not hang together through edges: two sheets that touch in a point.
+    ///
+    /// O(faces) for the usual fan, O(faces^2) in the worst case.
     #[must_use]
     pub fn is_pinched(&self, end: usize) -> bool {
-        let mut reached: u64 = 0;
-        let at_end = |f: &RingFace| f.at[end] < 3;
-        let count = self.faces.iter().filter(|f| at_end(f)).count();
-        if count > 64 {
-            return self.is_pinched_wide(end);
-        }
-        // Face i of the end reaches face j through a vertex other than the end itself.
-        let of_end = || self.faces.iter().filter(|f| at_end(f)).enumerate();
-        let mut front: u64 = 1;
-        while front != 0 {
-            reached |= front;
-            let mut next = 0;
-            for (i, f) in of_end() {
-                if front >> i & 1 == 1 {
-                    for (j, g) in of_end() {
-                        if reached >> j & 1 == 0 && touch(f, g, self.ends[end]) {
-                            next |= 1 << j;
-                        }
-                    }
-                }
+        let mut fan = [[0_u32; 2]; 16];
+        let mut count = 0;
+        for face in self.faces.iter().filter(|f| f.at[end] < 3) {
+            if count == fan.len() {
+                return self.is_pinched_wide(end);
             }
-            front = next & !reached;
+            let apex = usize::from(face.at[end]);
+            fan[count] = [face.corners[(apex + 1) % 3], face.corners[(apex + 2) % 3]];
+            count += 1;
         }
-        (reached.count_ones() as usize) < count
+        // Faces that are reached come first.
+        let mut reached = count.min(1);
+        let mut next = 0;
+        while next < reached {
+            let [a, b] = fan[next];
+            let mut i = reached;
+            while i < count {
+                let [c, d] = fan[i];
+                if a == c || a == d || b == c || b == d {
+                    fan.swap(reached, i);
+                    reached += 1;
+                }
+                i += 1;
+            }
+            next += 1;
+        }
+        reached < count
     }
 
     fn is_pinched_wide(&self, end: usize) -> bool {
@@ -382,7 +429,7 @@ impl Ring {
 fn touch(f: &RingFace, g: &RingFace, center: u32) -> bool {
     f.corners
         .iter()
-        .any(|&v| v != center && v != NONE && g.corners.contains(&v))
+        .any(|&v| v != center && g.corners.contains(&v))
 }
 
 /// Twice the area of a triangle along its normal.

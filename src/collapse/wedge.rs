@@ -120,8 +120,15 @@ pub(super) fn is_feature(live: &LiveMesh, faces: &[RingFace], ends: [u32; 2]) ->
             .any(|&c| {
                 let differs = |end: usize| !rows.same(c, a[first_at[end]], b[other_at[end]]);
                 let mirrored = || {
+                    // Faces that run along the edge the same way show different sides.
+                    let forward = |at: [usize; 2]| (at[0] + 1) % 3 == at[1];
+                    let side = if forward(first_at) == forward(other_at) {
+                        -1.0
+                    } else {
+                        1.0
+                    };
                     matches!(c.kind, ChannelKind::TexCoord(_))
-                        && texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
+                        && side * texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
                 };
                 differs(0) || differs(1) || mirrored()
             })
@@ -230,8 +237,8 @@ pub(super) fn transfer(live: &LiveMesh, ring: &Ring, position: DVec3, patch: &mu
 
 /// Numbers the classes of corners in one channel: a class is the index of its first corner.
 fn classify(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
-    for i in 0..corners.len() {
-        corners[i].class = i;
+    for (i, corner) in corners.iter_mut().enumerate() {
+        corner.class = i;
     }
     for i in 1..corners.len() {
         for j in 0..i {

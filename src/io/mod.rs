@@ -16,7 +16,10 @@ mod ply_header;
 mod ply_read;
 mod ply_source;
 mod ply_write;
+mod rows;
 mod stl_read;
 mod stl_write;
+mod summary;
 
 pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, writable_format, write};
+pub use summary::Summary;

@@ -14,6 +14,7 @@ use tobj::{LoadError, LoadOptions};
 use super::{
     Encoding, Loaded,
     obj_scan::{self, Scan},
+    rows,
 };
 use crate::{
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, unite},
@@ -143,7 +144,8 @@ fn first_bad_number(bytes: &[u8], precision: Precision) -> Option<String> {
                         "line {line}: the weight of a vertex is 0; expected another number"
                     ));
                 }
-                Some(x) if !precision.round(x).is_finite() && !(may_be_nan && x.is_nan()) => {
+                Some(x) if may_be_nan && x.is_nan() => {}
+                Some(x) if !precision.round(x).is_finite() => {
                     return Some(format!(
                         "line {line}: found `{found}`; expected a finite number"
                     ));
@@ -220,9 +222,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
                 values.extend(&scan.colors[v]);
             }
         }
-        for x in &mut values {
-            *x = precision.round(*x);
-        }
+        rows::settle(&mut values, &kinds, precision);
         let (corners, _) = united.groups.as_chunks::<3>();
         attributes = Attributes::new(&kinds, values, corners.to_vec())?;
     }

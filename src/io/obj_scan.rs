@@ -76,10 +76,7 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)
                 joined.push(b' ');
             }
             if !continues {
-                return Some((
-                    first,
-                    joined.map_or(Cow::Borrowed(line), |joined| Cow::Owned(joined)),
-                ));
+                return Some((first, joined.map_or(Cow::Borrowed(line), Cow::Owned)));
             }
         }
     })

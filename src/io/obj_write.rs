@@ -32,7 +32,7 @@ pub(super) fn encode(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
         push_numbers(&mut text, &p.to_array(), precision);
         if let Some((channel, wedge)) = color.zip(per_vertex.wedges[v]) {
             let values = attributes.value(channel, wedge);
-            if !values[0].is_nan() {
+            if !values.iter().any(|x| x.is_nan()) {
                 push_numbers(&mut text, &values[..3], precision);
             }
         }
@@ -183,7 +183,7 @@ impl Listed {
         let mut next = 0;
         for &first in &united.firsts {
             let values = attributes.value(channel, wedges[first]);
-            if values[0].is_nan() {
+            if values.iter().any(|x| x.is_nan()) {
                 numbers.push(Self::ABSENT);
                 continue;
             }

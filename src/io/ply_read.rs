@@ -1,9 +1,8 @@
 //! Reads PLY (G. Turk, 1994), text and binary.
 //!
-//! Our own reader instead of a crate: `ply-rs-bw` 4 fills every item through a trait call per property, reads
-//! element types that the destination must know beforehand, says neither byte nor line in binary files, and hands out
-//! polygons as a list per face. This one reads numbers straight into the mesh, refuses a count that the rest of the
-//! file cannot hold before it allocates, and names the place of every fault.
+//! Our own reader instead of a crate: `ply-rs-bw` 4 bounds what it allocates, but sets every value of every item by the
+//! name of its property, keeps a list per face, and gives no offset in binary files. This one reads numbers straight
+//! into the mesh, refuses at once a count that the rest of the file cannot hold, and names the place of every fault.
 //!
 //! Polygons become fans around their first corner. Corner texture coordinates are the face property `texcoord` as
 //! MeshLab writes it. Integer colours are divided by the largest value of their type.
@@ -14,6 +13,7 @@ use super::{
     Encoding, Loaded,
     ply_header::{self, Element, Scalar, Shape, Storage},
     ply_source::{Binary, Fault, Source, Text},
+    rows,
 };
 use crate::{
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, compare_rows, unite},
@@ -422,9 +422,7 @@ impl<S: Source> Reader<S> {
 
     fn attributes(&mut self) -> Result<Attributes, String> {
         let precision = self.precision;
-        for x in &mut self.rows {
-            *x = precision.round(*x);
-        }
+        rows::settle(&mut self.rows, &self.kinds, precision);
         if self.corner_uvs.is_empty() {
             return Attributes::new(
                 &self.kinds,
@@ -454,7 +452,11 @@ impl<S: Source> Reader<S> {
             .corner_uvs
             .iter()
             .flatten()
-            .map(|uv| uv.map(|x| precision.round(x)))
+            .map(|uv| {
+                let mut uv = *uv;
+                rows::settle(&mut uv, &[ChannelKind::TexCoord(0)], precision);
+                uv
+            })
             .collect();
         let vertices: &[u32] = self.triangles.as_flattened();
         let united = unite(uvs.len(), |a, b| {

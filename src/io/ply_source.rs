@@ -46,7 +46,7 @@ pub(super) struct Text<'a> {
 }
 
 impl Text<'_> {
-    fn to_word(&mut self) {
+    fn skip_space(&mut self) {
         while let Some(&b) = self.bytes.get(self.at) {
             if !b.is_ascii_whitespace() {
                 break;
@@ -57,7 +57,7 @@ impl Text<'_> {
     }
 
     fn word(&mut self) -> Result<(usize, usize), Fault> {
-        self.to_word();
+        self.skip_space();
         let start = self.at;
         while self
             .bytes
@@ -119,7 +119,7 @@ impl Source for Text<'_> {
     }
 
     fn excess(&mut self) -> u64 {
-        self.to_word();
+        self.skip_space();
         (self.bytes.len() - self.at) as u64
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
                 Some(wedge) => attributes.value(channel, wedge),
                 None => &zeros[..channel.kind.width()],
             };
-            absent += usize::from(values[0].is_nan());
+            absent += usize::from(values.iter().any(|x| x.is_nan()));
             for &x in values {
                 if plan.byte_colours && is_colour(channel.kind) {
                     sink.byte((x * 255.0).round() as u8);
@@ -61,7 +61,7 @@ pub(super) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
             sink.byte(6);
             for &wedge in &attributes.corners()[t] {
                 let values = attributes.value(channel, wedge);
-                absent += usize::from(values[0].is_nan());
+                absent += usize::from(values.iter().any(|x| x.is_nan()));
                 for &x in values {
                     sink.real(x);
                 }

@@ -1,8 +1,8 @@
 //! Reads STL (3D Systems, 1988), text and binary.
 //!
-//! Our own reader instead of a crate: `stl_io` 0.11 takes every file that begins with `solid` for text (many
-//! exporters begin binary headers so), keeps reading where the declared count and the file disagree, and its errors
-//! have no place. A file whose length is exactly what its binary count says is binary.
+//! Our own reader instead of a crate: `stl_io` 0.11 takes a file for text exactly where it begins with `solid `, as
+//! the headers of many binary files do, its errors have no place, and it writes no text. Here a file whose length is
+//! what its binary count says is binary, whatever it begins with.
 //!
 //! STL has no shared vertices: every triangle gets three of its own, and welding unites them. Facets with more than
 //! three corners (text only) become fans.
@@ -135,14 +135,11 @@ fn text(bytes: &[u8]) -> Result<Loaded, String> {
         words.expect(&["solid"], "the start of a solid")?;
         words.skip_line();
         solids += 1;
-        loop {
-            match words.expect(
-                &["facet", "endsolid"],
-                "the next facet or the end of the solid",
-            )? {
-                0 => {}
-                _ => break,
-            }
+        while words.expect(
+            &["facet", "endsolid"],
+            "the next facet or the end of the solid",
+        )? == 0
+        {
             words.expect(&["normal"], "the normal of the facet")?;
             for _ in 0..3 {
                 words.float("a coordinate of the normal", false)?;

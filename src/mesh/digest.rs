@@ -16,6 +16,17 @@ use crate::num::Precision;
 /// every triangle (`u32`), material libraries (UTF-8).
 #[must_use]
 pub fn content_sha256(mesh: &Mesh) -> String {
+    let mut digits = String::with_capacity(64);
+    for byte in content_digest(mesh) {
+        // Writing to a String cannot fail.
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
+}
+
+/// The 32 bytes of [`content_sha256`].
+#[must_use]
+pub fn content_digest(mesh: &Mesh) -> [u8; 32] {
     let mut sink = Sink {
         hash: Sha256::new(),
         pending: Vec::with_capacity(BLOCK + 32),
@@ -93,13 +104,8 @@ impl Sink {
         }
     }
 
-    fn finish(mut self) -> String {
+    fn finish(mut self) -> [u8; 32] {
         self.hash.update(&self.pending);
-        let mut digits = String::with_capacity(64);
-        for byte in self.hash.finalize() {
-            // Writing to a String cannot fail.
-            let _ = write!(digits, "{byte:02x}");
-        }
-        digits
+        self.hash.finalize().into()
     }
 }

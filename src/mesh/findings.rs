@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Edge, Edges, Mesh, VertexTriangles, compare_rows, unite};
+use super::{Edge, Edges, Mesh, VertexTriangles, compare_rows, topology::Topology, unite};
 use crate::num::{Frame, math};
 
 /// One kind of finding: how often it occurs and the first places where it does.
@@ -24,7 +24,7 @@ impl Finding {
     /// Largest number of examples.
     pub const EXAMPLES: usize = 5;
 
-    fn add(&mut self, example: &[u32]) {
+    pub(super) fn add(&mut self, example: &[u32]) {
         if self.count < Self::EXAMPLES {
             self.examples.push(example.to_vec());
         }
@@ -44,6 +44,8 @@ pub struct Bounds {
 /// Everything [`Findings::of`] looks for. Counts are of the mesh as given.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Findings {
+    /// The verdict: there are triangles, and none of the problems below.
+    pub clean: bool,
     /// Number of vertices.
     pub vertices: usize,
     /// Number of triangles.
@@ -97,7 +99,8 @@ impl Findings {
                 unreferenced_vertices.add(&[v]);
             }
         }
-        Self {
+        let mut found = Self {
+            clean: false,
             vertices: mesh.positions().len(),
             triangles: mesh.triangles().len(),
             edges: edges.len(),
@@ -119,7 +122,9 @@ impl Findings {
             non_manifold_edges,
             non_manifold_vertices: topology.non_manifold_vertices,
             misoriented_edges,
-        }
+        };
+        found.clean = found.triangles > 0 && found.problems().is_empty();
+        found
     }
 
     /// The problems, each with its name; remarks are not among them. Empty where the mesh is clean.
@@ -145,12 +150,6 @@ impl Findings {
         .into_iter()
         .filter(|(_, finding)| finding.count > 0)
         .collect()
-    }
-
-    /// True where there are triangles and none of the problems.
-    #[must_use]
-    pub fn is_clean(&self) -> bool {
-        self.triangles > 0 && self.problems().is_empty()
     }
 
     /// The findings as lines of text, the verdict last.
@@ -191,7 +190,7 @@ impl Findings {
         }
         text.push_str(if self.triangles == 0 {
             "problem: no triangles\n"
-        } else if self.is_clean() {
+        } else if self.clean {
             "clean\n"
         } else {
             "not clean\n"
@@ -343,105 +342,4 @@ fn differ_at(mesh: &Mesh, edge: Edge, s: u32, t: u32) -> bool {
         let (a, b) = (wedge(s, v), wedge(t, v));
         a != b && compare_rows(attributes.row(a), attributes.row(b)).is_ne()
     })
-}
-
-/// What hangs together.
-struct Topology {
-    components: usize,
-    boundary_loops: usize,
-    non_manifold_vertices: Finding,
-}
-
-impl Topology {
-    fn of(mesh: &Mesh, edges: &Edges, around: &VertexTriangles) -> Self {
-        let triangles = mesh.triangles();
-        let boundary: Vec<Edge> = edges
-            .iter()
-            .filter(|(_, at)| at.len() == 1)
-            .map(|(edge, _)| edge)
-            .collect();
-        let mut components = Sets::new(triangles.len());
-        let mut loops = Sets::new(boundary.len());
-        let mut non_manifold_vertices = Finding::default();
-        let (mut ends, mut rims) = (Vec::new(), Vec::new());
-        for v in 0..mesh.positions().len() as u32 {
-            for pair in around.at(v).windows(2) {
-                components.unite(pair[0], pair[1]);
-            }
-            // The other ends of the edges at `v`, each with a triangle there (as an index into this list).
-            let here: Vec<u32> = around
-                .at(v)
-                .iter()
-                .copied()
-                .filter(|&t| !repeats_a_vertex(triangles[t as usize]))
-                .collect();
-            ends.clear();
-            for (i, &t) in here.iter().enumerate() {
-                for end in triangles[t as usize].into_iter().filter(|&end| end != v) {
-                    ends.push((end, i as u32));
-                }
-            }
-            ends.sort_unstable();
-            let mut fans = Sets::new(here.len());
-            for pair in ends.windows(2) {
-                if pair[0].0 == pair[1].0 {
-                    fans.unite(pair[0].1, pair[1].1);
-                }
-            }
-            if fans.count() > 1 {
-                non_manifold_vertices.add(&[v]);
-            }
-            rims.clear();
-            for &(end, i) in &ends {
-                if let Ok(edge) = boundary.binary_search(&[v.min(end), v.max(end)]) {
-                    rims.push((fans.root(i), edge as u32));
-                }
-            }
-            rims.sort_unstable();
-            for pair in rims.windows(2) {
-                if pair[0].0 == pair[1].0 {
-                    loops.unite(pair[0].1, pair[1].1);
-                }
-            }
-        }
-        Self {
-            components: components.count(),
-            boundary_loops: loops.count(),
-            non_manifold_vertices,
-        }
-    }
-}
-
-fn repeats_a_vertex([a, b, c]: [u32; 3]) -> bool {
-    a == b || b == c || c == a
-}
-
-/// Disjoint sets of `0..n` with path halving; the smallest member is the root.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            self.0[x as usize] = self.0[self.0[x as usize] as usize];
-            x = self.0[x as usize];
-        }
-        x
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-
-    fn count(&self) -> usize {
-        self.0
-            .iter()
-            .enumerate()
-            .filter(|&(i, &parent)| i as u32 == parent)
-            .count()
-    }
 }

@@ -10,13 +10,14 @@ mod digest;
 mod findings;
 pub mod generate;
 mod indexed;
+mod topology;
 mod unite;
 mod weld;
 
 pub use adjacency::{Edge, Edges, VertexTriangles};
 pub use attributes::{Attributes, Channel, ChannelKind};
 pub use canonical::{Canonical, canonical};
-pub use digest::content_sha256;
+pub use digest::{content_digest, content_sha256};
 pub use findings::{Bounds, Finding, Findings};
 pub use indexed::{Materials, Mesh, MeshParts};
 pub(crate) use unite::{compare_rows, unite};

@@ -16,6 +16,9 @@ pub struct Welded {
 /// Merges vertices with bit-equal positions (`-0` equals `+0`) into the first of each. The vertices that stay keep
 /// their order and bits, the triangles their order and number (some may now repeat a vertex), attributes and
 /// materials are untouched. O(n log n).
+///
+/// # Panics
+/// Never: a valid mesh with fewer vertices is valid.
 #[must_use]
 pub fn weld(mesh: Mesh) -> Welded {
     // Adding +0 turns -0 into +0 and changes nothing else.

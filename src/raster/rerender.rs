@@ -4,17 +4,14 @@
 //! for the removed ones, are drawn again into it, then the added ones. The published method, and the oracle for any
 //! faster engine.
 
-use super::{
-    Added, Change, Face, FaceGeometry, Model, Paint, Plane, Projector, Region, ScreenVertex, Setup,
-    Shader, Unrender, Visit,
-    buckets::{Buckets, Stamps},
-    draw::EMPTY,
-};
-use crate::{
-    num::fixed::level,
-    view::{Interpolation, View, ViewSet},
-};
 use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{
+    Change, FaceGeometry, Model, Plane, Unrender, Weigh,
+    pictures::{PartScratch, ViewPictures},
+};
+use crate::view::ViewSet;
 
 /// Pictures of a mesh in all views, un-rendered with row and column buckets.
 #[derive(Clone, Debug)]
@@ -23,45 +20,21 @@ pub struct BucketEngine {
     views: Vec<ViewPictures>,
 }
 
-/// One view: its pictures and what is needed to change them.
+/// Buffers of an evaluation, reused.
 #[derive(Clone, Debug)]
-struct ViewPictures {
-    view: View,
-    projector: Projector,
-    shader: Shader,
-    /// Every vertex on the screen.
-    screen: Vec<ScreenVertex>,
-    /// Flat shading of white triangles: the level of every triangle. Gouraud shading: empty.
-    levels: Vec<u8>,
-    /// Gouraud shading: the intensity of every vertex. Flat shading: empty.
-    intensities: Vec<f64>,
-    /// The pixels every triangle can touch, as it is entered in the buckets.
-    extents: Vec<Region>,
-    buckets: Buckets,
-    keys: Plane<u64>,
-    luma: Plane<u8>,
-    background: u8,
+pub struct BucketScratch {
+    geometry: Vec<(FaceGeometry, [DVec3; 3])>,
+    /// One for every part of the views that is looked at on its own.
+    parts: Vec<PartScratch>,
 }
 
-/// What one thread needs to evaluate changes: reused, so that an evaluation allocates nothing.
-#[derive(Clone, Debug, Default)]
-pub struct BucketScratch {
-    stamps: Stamps,
-    found: Vec<u32>,
-    geometry: Vec<(FaceGeometry, [DVec3; 3])>,
-    moved: Vec<ScreenVertex>,
-    shaded: Vec<f64>,
-    setups: Vec<(u32, Setup, Paint)>,
-    added_extents: Vec<Region>,
-    keys: Vec<u64>,
-    luma: Vec<u8>,
-}
+/// Most parts that the views are divided into: with fewer views each, handing over costs more than it saves.
+const PARTS: usize = 4;
 
 impl BucketEngine {
     /// Draws the model in every view of the set.
     #[must_use]
     pub fn new(model: Model, set: &ViewSet) -> Self {
-        use rayon::prelude::*;
         let views = set
             .views
             .par_iter()
@@ -70,20 +43,13 @@ impl BucketEngine {
         Self { model, views }
     }
 
-    /// Number of views.
-    #[must_use]
-    pub fn view_count(&self) -> usize {
-        self.views.len()
-    }
-
     fn begin(&self, change: &Change<'_>, scratch: &mut BucketScratch) {
         scratch.geometry.clear();
-        scratch.geometry.extend(
-            change
-                .added
-                .iter()
-                .map(|face| self.model.geometry_after(change, face)),
-        );
+        let geometry = change
+            .added
+            .iter()
+            .map(|face| self.model.geometry_after(change, face));
+        scratch.geometry.extend(geometry);
     }
 }
 
@@ -91,28 +57,52 @@ impl Unrender for BucketEngine {
     type Scratch = BucketScratch;
 
     fn scratch(&self) -> BucketScratch {
+        let parts = rayon::current_num_threads()
+            .min(PARTS)
+            .min(self.views.len())
+            .max(1);
+        let part = PartScratch::new(self.model.corners.len());
         BucketScratch {
-            stamps: Stamps::new(self.model.corners.len()),
-            ..BucketScratch::default()
+            geometry: Vec::new(),
+            parts: vec![part; parts],
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut BucketScratch, visit: &mut Visit<'_>) {
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut BucketScratch, weigh: &Weigh<'_>) -> i64 {
         self.begin(change, scratch);
-        for (i, view) in self.views.iter().enumerate() {
-            let region = view.redraw(&self.model, change, scratch);
-            view.differences(region, scratch, |at, old, new| visit(i, at, old, new));
-        }
+        let geometry = &scratch.geometry;
+        let views: Vec<(usize, &ViewPictures)> = self.views.iter().enumerate().collect();
+        in_parts(
+            views,
+            &mut scratch.parts,
+            &|(i, view): (usize, &ViewPictures), part| {
+                let region = view.redraw(&self.model, change, geometry, part);
+                view.difference(region, part, |at, old, new| weigh(i, at, old, new))
+            },
+        )
     }
 
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut BucketScratch, visit: &mut Visit<'_>) {
+    fn commit(
+        &mut self,
+        change: &Change<'_>,
+        scratch: &mut BucketScratch,
+        weigh: &Weigh<'_>,
+    ) -> i64 {
         self.begin(change, scratch);
-        for (i, view) in self.views.iter_mut().enumerate() {
-            let region = view.redraw(&self.model, change, scratch);
-            view.differences(region, scratch, |at, old, new| visit(i, at, old, new));
-            view.apply(change, region, scratch);
-        }
+        let (model, geometry) = (&self.model, &scratch.geometry);
+        let views: Vec<(usize, &mut ViewPictures)> = self.views.iter_mut().enumerate().collect();
+        let sum = in_parts(
+            views,
+            &mut scratch.parts,
+            &|(i, view): (usize, &mut ViewPictures), part| {
+                let region = view.redraw(model, change, geometry, part);
+                let sum = view.difference(region, part, |at, old, new| weigh(i, at, old, new));
+                view.apply(change, geometry, region, part);
+                sum
+            },
+        );
         self.model.apply(change);
+        sum
     }
 
     fn luma(&self, view: usize) -> &Plane<u8> {
@@ -124,273 +114,23 @@ impl Unrender for BucketEngine {
     }
 }
 
-impl ViewPictures {
-    fn new(model: &Model, view: &View, set: &ViewSet) -> Self {
-        let projector = Projector::new(view, set);
-        let shader = Shader::new(view);
-        let image = projector.image();
-        let (width, height) = (image.x1 as u32, image.y1 as u32);
-        let gouraud = view.shading.interpolation == Interpolation::Gouraud;
-        let mut pictures = Self {
-            view: *view,
-            shader,
-            screen: model
-                .positions
-                .iter()
-                .map(|&p| projector.screen(p))
-                .collect(),
-            levels: Vec::new(),
-            intensities: if gouraud {
-                model
-                    .positions
-                    .iter()
-                    .zip(&model.normals)
-                    .map(|(&p, &n)| shader.intensity(p, n))
-                    .collect()
-            } else {
-                Vec::new()
-            },
-            extents: vec![Region::EMPTY; model.corners.len()],
-            buckets: Buckets::new(width, height),
-            keys: Plane::filled(width, height, EMPTY),
-            luma: Plane::filled(width, height, set.background),
-            background: set.background,
-            projector,
-        };
-        if !gouraud {
-            pictures.levels = model
-                .corners
-                .iter()
-                .map(|c| pictures.level(&FaceGeometry::new(c.map(|v| model.positions[v as usize]))))
-                .collect();
-        }
-        let (mut keys, mut luma) = (
-            pictures.keys.values().to_vec(),
-            pictures.luma.values().to_vec(),
-        );
-        for id in 0..model.corners.len() as u32 {
-            let mut extent = Region::EMPTY;
-            pictures
-                .face(model, id)
-                .pieces(&pictures.projector, view.cull, |setup, paint| {
-                    extent = extent.union(setup.bounds());
-                    draw(setup, paint, id, image, &mut keys, &mut luma);
-                });
-            pictures.extents[id as usize] = extent;
-            pictures.buckets.insert(id, extent);
-        }
-        pictures.keys.values_mut().copy_from_slice(&keys);
-        pictures.luma.values_mut().copy_from_slice(&luma);
-        pictures
-    }
-
-    /// The flat level of a white triangle.
-    fn level(&self, geometry: &FaceGeometry) -> u8 {
-        level(self.shader.intensity(geometry.centroid, geometry.normal))
-    }
-
-    /// A triangle as it is now.
-    #[inline]
-    fn face(&self, model: &Model, id: u32) -> Face {
-        let corners = model.corners[id as usize];
-        let positions = corners.map(|v| model.positions[v as usize]);
-        let paint = match (self.intensities.is_empty(), model.colors.get(id as usize)) {
-            (true, None) => Paint::Flat(self.levels[id as usize]),
-            (true, colors) => {
-                let g = FaceGeometry::new(positions);
-                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
-            }
-            (false, colors) => {
-                Paint::gouraud(corners.map(|v| self.intensities[v as usize]), colors)
-            }
-        };
-        Face {
-            positions,
-            screen: corners.map(|v| self.screen[v as usize]),
-            paint,
-        }
-    }
-
-    /// An added triangle as it will be.
-    fn face_after(
-        &self,
-        model: &Model,
-        change: &Change<'_>,
-        added: &Added,
-        geometry: &(FaceGeometry, [DVec3; 3]),
-        (moved, shaded): (&[ScreenVertex], &[f64]),
-    ) -> Face {
-        let colors = (!model.colors.is_empty()).then_some(&added.colors);
-        let paint = if self.intensities.is_empty() {
-            Paint::flat(
-                self.shader
-                    .intensity(geometry.0.centroid, geometry.0.normal),
-                colors,
-            )
-        } else {
-            let intensity = |v: u32| match change.normals.iter().position(|n| n.0 == v) {
-                Some(i) => shaded[i],
-                None => self.intensities[v as usize],
-            };
-            Paint::gouraud(added.corners.map(intensity), colors)
-        };
-        let screen = added.corners.map(|v| {
-            change
-                .moved
-                .iter()
-                .position(|m| m.0 == v)
-                .map_or_else(|| self.screen[v as usize], |i| moved[i])
-        });
-        Face {
-            positions: geometry.1,
-            screen,
-            paint,
-        }
-    }
-
-    /// Draws what the region of the change shows after it into the scratch planes, and returns the region.
-    fn redraw(&self, model: &Model, change: &Change<'_>, scratch: &mut BucketScratch) -> Region {
-        scratch.moved.clear();
-        scratch
-            .moved
-            .extend(change.moved.iter().map(|m| self.projector.screen(m.1)));
-        scratch.shaded.clear();
-        if !self.intensities.is_empty() {
-            scratch.shaded.extend(
-                change
-                    .normals
-                    .iter()
-                    .map(|&(v, n)| self.shader.intensity(model.position_after(change, v), n)),
+/// The sum of `work` over all views, in as many parts as there are scratches.
+fn in_parts<V: Send>(
+    mut views: Vec<V>,
+    parts: &mut [PartScratch],
+    work: &(impl Fn(V, &mut PartScratch) -> i64 + Sync),
+) -> i64 {
+    match parts {
+        [] => 0,
+        [part] => views.into_iter().map(|view| work(view, part)).sum(),
+        _ => {
+            let (left, right) = parts.split_at_mut(parts.len() / 2);
+            let rest = views.split_off(views.len() * left.len() / (left.len() + right.len()));
+            let (a, b) = rayon::join(
+                || in_parts(views, left, work),
+                || in_parts(rest, right, work),
             );
-        }
-        let mut region = Region::EMPTY;
-        for &id in change.removed {
-            region = region.union(self.extents[id as usize]);
-        }
-        scratch.setups.clear();
-        scratch.added_extents.clear();
-        for (added, geometry) in change.added.iter().zip(&scratch.geometry) {
-            let face = self.face_after(
-                model,
-                change,
-                added,
-                geometry,
-                (&scratch.moved, &scratch.shaded),
-            );
-            let mut extent = Region::EMPTY;
-            face.pieces(&self.projector, self.view.cull, |setup, paint| {
-                extent = extent.union(setup.bounds());
-                scratch.setups.push((added.id, *setup, *paint));
-            });
-            scratch.added_extents.push(extent);
-            region = region.union(extent);
-        }
-        let size = region.width() * region.height();
-        scratch.keys.clear();
-        scratch.keys.resize(size, EMPTY);
-        scratch.luma.clear();
-        scratch.luma.resize(size, self.background);
-        if size == 0 {
-            return region;
-        }
-        self.buckets.query(
-            region,
-            change.removed,
-            &mut scratch.stamps,
-            &mut scratch.found,
-        );
-        for &id in &scratch.found {
-            self.face(model, id)
-                .pieces(&self.projector, self.view.cull, |setup, paint| {
-                    draw(
-                        setup,
-                        paint,
-                        id,
-                        region,
-                        &mut scratch.keys,
-                        &mut scratch.luma,
-                    );
-                });
-        }
-        for (id, setup, paint) in &scratch.setups {
-            draw(
-                setup,
-                paint,
-                *id,
-                region,
-                &mut scratch.keys,
-                &mut scratch.luma,
-            );
-        }
-        region
-    }
-
-    /// Visits the samples of the region whose luma differs between the picture and the scratch.
-    fn differences(
-        &self,
-        region: Region,
-        scratch: &BucketScratch,
-        mut visit: impl FnMut(usize, u8, u8),
-    ) {
-        let width = region.width();
-        for (y, row) in scratch.luma.chunks_exact(width.max(1)).enumerate() {
-            let start = (region.y0 as usize + y) * self.luma.width() as usize + region.x0 as usize;
-            let now = &self.luma.values()[start..start + width];
-            for (x, (&old, &new)) in now.iter().zip(row).enumerate() {
-                if old != new {
-                    visit(start + x, old, new);
-                }
-            }
+            a + b
         }
     }
-
-    /// Makes the change that [`ViewPictures::redraw`] has drawn.
-    fn apply(&mut self, change: &Change<'_>, region: Region, scratch: &BucketScratch) {
-        for &id in change.removed {
-            self.buckets.remove(id, self.extents[id as usize]);
-            self.extents[id as usize] = Region::EMPTY;
-        }
-        for ((added, extent), geometry) in change
-            .added
-            .iter()
-            .zip(&scratch.added_extents)
-            .zip(&scratch.geometry)
-        {
-            self.extents[added.id as usize] = *extent;
-            self.buckets.insert(added.id, *extent);
-            if !self.levels.is_empty() {
-                self.levels[added.id as usize] = self.level(&geometry.0);
-            }
-        }
-        for (&(v, _), &screen) in change.moved.iter().zip(&scratch.moved) {
-            self.screen[v as usize] = screen;
-        }
-        for (&(v, _), &intensity) in change.normals.iter().zip(&scratch.shaded) {
-            self.intensities[v as usize] = intensity;
-        }
-        let (width, stride) = (region.width(), self.luma.width() as usize);
-        let rows = scratch
-            .keys
-            .chunks_exact(width.max(1))
-            .zip(scratch.luma.chunks_exact(width.max(1)));
-        for (y, (keys, luma)) in rows.enumerate() {
-            let start = (region.y0 as usize + y) * stride + region.x0 as usize;
-            self.keys.values_mut()[start..start + width].copy_from_slice(keys);
-            self.luma.values_mut()[start..start + width].copy_from_slice(luma);
-        }
-    }
-}
-
-/// Draws a set-up triangle into planes that hold only `region`.
-#[inline]
-fn draw(setup: &Setup, paint: &Paint, id: u32, region: Region, keys: &mut [u64], luma: &mut [u8]) {
-    let width = region.width();
-    setup.fragments(region, |x, y, depth| {
-        let at = (y - region.y0) as usize * width + (x - region.x0) as usize;
-        let key = u64::from(depth) << 32 | u64::from(id);
-        if key < keys[at] {
-            keys[at] = key;
-            luma[at] = paint.luma(setup, x, y);
-        }
-    });
 }

@@ -32,8 +32,9 @@ pub struct Change<'a> {
     pub normals: &'a [(u32, DVec3)],
 }
 
-/// Visits samples whose luma changes: view, index of the sample in its plane, luma before, luma after.
-pub type Visit<'a> = dyn FnMut(usize, usize, u8, u8) + 'a;
+/// What a sample's change is worth: view, index of the sample in its plane, luma before, luma after. Engines add the
+/// values of all samples that change; sums of integers have no order, so views may be looked at in parallel.
+pub type Weigh<'a> = dyn Fn(usize, usize, u8, u8) -> i64 + Sync + 'a;
 
 /// Pictures of one mesh in all views of a set, kept up to date.
 pub trait Unrender: Sync {
@@ -43,11 +44,16 @@ pub trait Unrender: Sync {
     /// Room for one thread.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Visits every sample that the change would alter, without making it.
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch, visit: &mut Visit<'_>);
+    /// The sum over every sample that the change would alter, without making it.
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch, weigh: &Weigh<'_>) -> i64;
 
-    /// Makes the change, visiting every sample it alters.
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch, visit: &mut Visit<'_>);
+    /// Makes the change and gives the sum over every sample it alters.
+    fn commit(
+        &mut self,
+        change: &Change<'_>,
+        scratch: &mut Self::Scratch,
+        weigh: &Weigh<'_>,
+    ) -> i64;
 
     /// The luma picture of a view.
     fn luma(&self, view: usize) -> &Plane<u8>;

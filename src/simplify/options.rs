@@ -106,8 +106,10 @@ impl Options {
             target,
             error_rms: None,
             rules: Rules::default(),
-            schedule: Schedule::default(),
             measure_rank: 0,
+            // Mean distance on bunny and dragon: within 1 % of the best queue at every level that was measured; lazy
+            // alone is up to 2 % worse for two thirds of the evaluations.
+            schedule: Schedule::Semi,
         }
     }
 

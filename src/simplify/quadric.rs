@@ -20,7 +20,7 @@ use crate::{
 pub enum Weighting {
     /// 1 (the paper of 1997): depends on the tessellation.
     Unit,
-    /// A third of the face's area (1998).
+    /// The face's area (1998).
     #[default]
     Area,
 }
@@ -64,7 +64,7 @@ impl Default for QuadricOptions {
     fn default() -> Self {
         Self {
             weighting: Weighting::default(),
-            boundary_weight: 1000.0,
+            boundary_weight: 1.0,
             uncertainty: None,
         }
     }
@@ -79,7 +79,7 @@ pub struct Quadric {
 }
 
 /// Smallest share of the largest eigenvalue that the smallest may have for a minimum to be trusted.
-const WELL_CONDITIONED: f64 = 1e-3;
+const WELL_CONDITIONED: f64 = 1e-5;
 
 impl Quadric {
     /// `weight` times the squared distance to the plane through `point` with unit normal `normal`.
@@ -159,9 +159,10 @@ impl Quadric {
         let (c0, c1, c2) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
         let (c4, c5, c8) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);
         let determinant = xx * c0 + xy * c1 + xz * c2;
-        // For eigenvalues l1 >= l2 >= l3 the quotient of determinant and principal minors lies in [l3 / 3, l3].
-        let smallest = determinant / (c0 + c4 + c8);
-        let well = smallest > WELL_CONDITIONED * (xx + yy + zz);
+        // Eigenvalues l1 >= l2 >= l3: the minors are about l1 l2, the determinant over them lies in [l3 / 3, l3].
+        let (trace, minors) = (xx + yy + zz, c0 + c4 + c8);
+        let well = minors > WELL_CONDITIONED * (trace * trace)
+            && determinant > WELL_CONDITIONED * (trace * minors);
         let b = self.b;
         let v = -DVec3::new(
             c0 * b.x + c1 * b.y + c2 * b.z,
@@ -226,10 +227,9 @@ impl QuadricMethod {
             };
             let n = (points[1] - points[0]).cross(points[2] - points[0]);
             let Some(unit) = math::unit(n) else { continue };
-            let area = math::length(n) * 0.5;
             let weight = match options.weighting {
                 Weighting::Unit => 1.0,
-                Weighting::Area => area / 3.0,
+                Weighting::Area => math::length(n) * 0.5,
             };
             let q = Quadric::uncertain_plane(points[0], unit, weight, deviation.normal, position);
             for v in corners {

@@ -179,6 +179,20 @@ fn large_polygons_and_repeated_vertices_are_read() {
     assert_eq!(mesh.triangles().len(), 9998);
 }
 
+#[test]
+fn a_colour_of_which_a_part_is_not_a_number_is_absent() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                property float red\nproperty float green\nproperty float blue\n\
+                element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+                0 0 0 1 1 nan\n1 0 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n";
+    let mesh = read(Format::Ply, text.as_bytes()).expect("valid");
+    assert!(mesh.attributes().row(0).iter().all(|x| x.is_nan()));
+    assert!(mesh.attributes().row(1).iter().all(|x| x.is_finite()));
+    let (bytes, _) = io::encode(&mesh, Encoding::Obj).expect("writes");
+    let again = read(Format::Obj, &bytes).expect("reads");
+    assert!(again.attributes().row(0).iter().all(|x| x.is_nan()));
+}
+
 /// Pieces that a mutated file is likely to trip over.
 const TRAPS: [&[u8]; 16] = [
     b"-1",

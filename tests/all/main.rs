@@ -1,15 +1,24 @@
 //! Every integration test in one binary: a module per stage.
 
 mod architecture;
+mod collapse;
+mod findings;
 mod generate;
 mod golden;
+mod history;
 mod hostile;
+mod image;
 mod io;
+mod io_errors;
+mod memoryless;
 mod mesh;
 mod metric;
 mod metric_surface;
 mod output;
+mod quadric;
 mod raster;
+mod seams;
+mod shapes;
 mod unrender;
 mod view;
 

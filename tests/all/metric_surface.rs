@@ -299,7 +299,7 @@ fn triangle() -> impl Strategy<Value = [DVec3; 3]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(crate::cases(2000))]
     #[test]
     fn the_closest_point_meets_the_conditions_of_the_minimum(
         t in triangle(),
@@ -328,7 +328,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(crate::cases(64))]
     #[test]
     fn large_and_small_triangles_count_by_their_area(
         x in 0.01..0.99_f64,

@@ -42,7 +42,7 @@ fn rgb() -> impl Strategy<Value = Plane<[u8; 3]>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(crate::cases(40))]
 
     #[test]
     fn a_picture_reads_back_as_it_was_written(grey in grey(), rgb in rgb()) {

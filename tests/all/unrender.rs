@@ -271,14 +271,11 @@ proptest! {
             let change =
                 Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
             let square = |y0: u8, y: u8| (i64::from(y0) - i64::from(y)).pow(2);
-            let mut cost = 0;
-            engine.evaluate(&change, &mut scratch, &mut |view, at, old, new| {
-                cost += square(reference[view][at], new) - square(reference[view][at], old);
-            });
-            let mut committed = 0;
-            engine.commit(&change, &mut scratch, &mut |view, at, old, new| {
-                committed += square(reference[view][at], new) - square(reference[view][at], old);
-            });
+            let weigh = |view: usize, at: usize, old: u8, new: u8| {
+                square(reference[view][at], new) - square(reference[view][at], old)
+            };
+            let cost = engine.evaluate(&change, &mut scratch, &weigh);
+            let committed = engine.commit(&change, &mut scratch, &weigh);
             prop_assert_eq!(cost, committed);
             error += committed;
             let mut scratch_error = 0;

@@ -73,22 +73,18 @@ impl<E: Unrender> ImageError<E> {
     /// What the change would add to the sum; negative where it makes the pictures better.
     #[must_use]
     pub fn cost(&self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
-        let mut cost = 0;
         self.engine
-            .evaluate(change, scratch, &mut |view, at, old, new| {
-                cost += difference(&self.reference[view], at, old, new);
-            });
-        cost
+            .evaluate(change, scratch, &|view, at, old, new| {
+                difference(&self.reference[view], at, old, new)
+            })
     }
 
     /// Makes the change and returns what it added to the sum.
     pub fn commit(&mut self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
-        let mut cost = 0;
         let reference = &self.reference;
-        self.engine
-            .commit(change, scratch, &mut |view, at, old, new| {
-                cost += difference(&reference[view], at, old, new);
-            });
+        let cost = self.engine.commit(change, scratch, &|view, at, old, new| {
+            difference(&reference[view], at, old, new)
+        });
         self.sum = self.sum.wrapping_add_signed(cost);
         cost
     }

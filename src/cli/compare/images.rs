@@ -1,0 +1,178 @@
+//! Comparing images: equal, or where and how much they are not.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Found, Options, has_extension, verdict};
+use crate::{
+    Error, Result,
+    cli::{Common, Verdict, report, terminal::Terminal},
+    metric::{
+        difference::{Comparison, compare},
+        luma::{SquaredError, squared_error},
+    },
+    output::{
+        npy,
+        png::{self, Picture},
+        sheet::{Style, Tile, difference_strip, sheet},
+    },
+    raster::Plane,
+};
+
+/// What a file holds.
+enum Image {
+    Picture(Picture),
+    /// Ids or depths.
+    Numbers(Plane<u32>),
+}
+
+#[derive(Serialize)]
+struct Judgement<'a> {
+    candidate: &'a Path,
+    equal: bool,
+    /// Where and how much.
+    comparison: Comparison,
+    /// Of luma, in levels; null for numbers and where sizes differ.
+    rms: Option<f64>,
+    psnr: Option<f64>,
+    squared_error: Option<SquaredError>,
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    refuse_foreign(options)?;
+    let images = options.files().map(read).collect::<Result<Vec<_>>>()?;
+    let (expected, candidates) = images
+        .split_first()
+        .ok_or_else(|| Error::Internal("a reference without a file".into()))?;
+    let mut found = Vec::new();
+    for (path, actual) in options.candidates.iter().zip(candidates) {
+        let judgement = judge(&options.reference, expected, path, actual)?;
+        println!("{}: {}", path.display(), judgement.comparison);
+        if let Some(rms) = judgement.rms.filter(|_| !judgement.equal) {
+            println!(
+                "{}: luma differs by {rms:.4} levels RMS, PSNR {}",
+                path.display(),
+                super::table::number(judgement.psnr, 2)
+            );
+        }
+        found.push(judgement);
+    }
+    if let Some(path) = &options.difference {
+        write_difference(options, path, expected, candidates)?;
+        terminal.say(&format!("{}: written", path.display()));
+    }
+    let holds = found.iter().all(|j| options.holds(j.equal, j.rms));
+    let resolved = serde_json::json!({
+        "reference": options.reference,
+        "candidates": options.candidates,
+        "equal": options.equal,
+        "max_rms": options.max_rms,
+        "difference": options.difference,
+        "difference_scale": options.difference.as_ref().map(|_| options.difference_scale()),
+    });
+    report(common, "compare", resolved, Found::new(found))?;
+    Ok(verdict(holds))
+}
+
+/// An option that would be ignored is an error.
+fn refuse_foreign(options: &Options) -> Result<()> {
+    let foreign = [
+        ("--views", options.views.is_some()),
+        ("--size", options.size.is_some()),
+        ("--samples", options.samples.is_some()),
+        ("--distance-samples", options.distance_samples.is_some()),
+        ("--no-distance", options.no_distance),
+        ("--per-view", options.per_view),
+    ];
+    match foreign.iter().find(|(_, given)| *given) {
+        Some((name, _)) => Err(Error::Usage(format!(
+            "{name} means nothing to images; leave it out"
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn read(path: &Path) -> Result<Image> {
+    if has_extension(path, "npy") {
+        npy::read_plane(path).map(Image::Numbers)
+    } else {
+        png::read(path).map(Image::Picture)
+    }
+}
+
+fn judge<'a>(
+    reference: &Path,
+    expected: &Image,
+    candidate: &'a Path,
+    actual: &Image,
+) -> Result<Judgement<'a>> {
+    let (comparison, squared_error) = match (expected, actual) {
+        (Image::Numbers(e), Image::Numbers(a)) => (compare(e, a), None),
+        (Image::Picture(e), Image::Picture(a)) => pictures(e, a)?,
+        _ => {
+            return Err(Error::Usage(format!(
+                "{} and {} hold different things: levels are compared with levels (.png), numbers with numbers (.npy)",
+                reference.display(),
+                candidate.display()
+            )));
+        }
+    };
+    Ok(Judgement {
+        candidate,
+        equal: comparison.is_equal(),
+        rms: squared_error.map(SquaredError::rms),
+        psnr: squared_error.and_then(SquaredError::psnr),
+        comparison,
+        squared_error,
+    })
+}
+
+/// Grey pictures as they are; where one has colours, both in colours.
+fn pictures(expected: &Picture, actual: &Picture) -> Result<(Comparison, Option<SquaredError>)> {
+    let comparison = match (expected, actual) {
+        (Picture::Grey(e), Picture::Grey(a)) => compare(e, a),
+        _ => compare(&expected.clone().into_rgb(), &actual.clone().into_rgb()),
+    };
+    let error = match comparison {
+        Comparison::Sizes { .. } => None,
+        _ => Some(squared_error(
+            &expected.clone().into_luma(),
+            &actual.clone().into_luma(),
+            1,
+        )?),
+    };
+    Ok((comparison, error))
+}
+
+fn write_difference(
+    options: &Options,
+    path: &Path,
+    expected: &Image,
+    candidates: &[Image],
+) -> Result<()> {
+    let picture = |image: &Image| {
+        match image {
+        Image::Picture(picture) => Ok(picture.clone().into_rgb()),
+        Image::Numbers(_) => Err(Error::Usage(
+            "a difference picture is made of pictures (.png), not of numbers (.npy); leave --difference out".into(),
+        )),
+    }
+    };
+    let expected = picture(expected)?;
+    let strips = candidates
+        .iter()
+        .map(|c| difference_strip(&expected, &picture(c)?, options.difference_scale()))
+        .collect::<Result<Vec<_>>>()?;
+    let names: Vec<String> = options
+        .candidates
+        .iter()
+        .map(|c| c.display().to_string())
+        .collect();
+    let tiles: Vec<_> = strips
+        .iter()
+        .zip(&names)
+        .map(|(picture, label)| Tile { picture, label })
+        .collect();
+    png::write_rgb(path, &sheet(&tiles, 1, Style::default())?)
+}

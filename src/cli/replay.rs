@@ -1,0 +1,98 @@
+//! `lodmark replay`: any level of a recorded run.
+
+use std::path::PathBuf;
+
+use super::{Common, Verdict, report, source, terminal::Terminal};
+use crate::{
+    Error, Result,
+    collapse::{History, Replay},
+    io,
+    mesh::{self, content_sha256},
+};
+
+/// Rebuild any level of a recorded run, bit-equal to a run that stopped there
+#[derive(Debug, clap::Args)]
+pub(super) struct Options {
+    /// The mesh that was simplified
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// The file that `simplify --history` wrote
+    #[arg(value_name = "HISTORY")]
+    history: PathBuf,
+    /// Where to write the level; an existing file is replaced
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    /// The level: at most this many triangles
+    #[arg(long, short = 't', value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    triangles: u32,
+    /// Exit with code 6, writing nothing, where the run did not get that far
+    #[arg(long)]
+    strict: bool,
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    io::writable_format(&options.output)?;
+    let bytes =
+        std::fs::read(&options.history).map_err(|e| Error::io("read", &options.history, e))?;
+    let history = History::from_bytes(&bytes, &options.history)?;
+    // A recorded run welded its input or not; the hash of the content tells which.
+    let mesh = [true, false].into_iter().find_map(|weld| {
+        let mesh = source::read(&options.input, weld, terminal).map(|m| mesh::canonical(&m).mesh);
+        match mesh {
+            Ok(m) if weld && mesh::content_digest(&m) != history.header().input => None,
+            other => Some(other),
+        }
+    });
+    let mesh = mesh.unwrap_or_else(|| {
+        Err(Error::Internal(
+            "the second way of loading always answers".into(),
+        ))
+    })?;
+    let named = |error| match error {
+        Error::Input { message, .. } => Error::input(&options.history, message),
+        other => other,
+    };
+    let triangles = options.triangles as usize;
+    let mut replay = Replay::new(&mesh, &history).map_err(named)?;
+    replay.seek(triangles).map_err(named)?;
+    let live = replay.live();
+    let reached = live.triangle_count();
+    if reached > triangles {
+        let short = format!(
+            "the run ended with {reached} triangles; {triangles} were asked for; record a run that goes further"
+        );
+        if options.strict {
+            return Err(Error::TargetNotReached(short));
+        }
+        terminal.say(&short);
+    }
+    let level = if replay.applied() == 0 {
+        mesh.clone()
+    } else {
+        live.to_mesh().map_err(Error::Internal)?
+    };
+    for note in io::write(&options.output, &level)? {
+        terminal.say(&format!("{}: {note}", options.output.display()));
+    }
+    println!(
+        "{}: {} triangles after {} of {} records",
+        options.output.display(),
+        level.triangles().len(),
+        replay.applied(),
+        history.len()
+    );
+    let run: serde_json::Value =
+        serde_json::from_str(&history.header().options).unwrap_or_default();
+    report(
+        common,
+        "replay",
+        serde_json::json!({ "input": options.input, "triangles": triangles, "run": run }),
+        serde_json::json!({
+            "triangles_out": level.triangles().len(),
+            "vertices_out": level.positions().len(),
+            "records_applied": replay.applied(),
+            "content_sha256": content_sha256(&level),
+        }),
+    )?;
+    Ok(Verdict::Good)
+}

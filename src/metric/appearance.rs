@@ -1,0 +1,167 @@
+//! How much a candidate looks like a reference: squared luma error over a set of views, flat and Gouraud.
+//!
+//! Lindstrom & Turk 2000, sections 3.2 and 5: results are judged in views that did not drive the simplification (24 of
+//! 512 x 512 pixels, [`ViewSet::evaluation`]), and the views together are one mosaic (equation 2). Deviation: pixels
+//! are 2 x 2 samples, summed and not averaged, so that an error is an exact integer and edges weigh as much as they
+//! cover. Culling, light, sides and specular term are those of each view; only the interpolation is replaced.
+//! Units: scenes and views in one frame, that of the reference (see [`ViewSet::enter_frame`]).
+//! Pictures are drawn view by view and dropped once compared: memory is a few pictures, not views times pictures.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::luma::{SquaredError, ViewErrors, squared_error};
+use crate::{
+    Error, Progress, Result,
+    raster::{Plane, Scene, luma_sums, mean_luma},
+    view::{Interpolation, View, ViewSet},
+};
+
+/// Bytes of pictures in the making at a time; one view at least.
+const MEMORY: u64 = 1 << 30;
+/// Bytes of a sample while a picture is drawn: its key and its level.
+const SAMPLE_BYTES: u64 = 9;
+/// Triangles beyond which the rasterizer draws a picture in parts: for the estimate of memory only.
+const PART: usize = 32_768;
+
+/// The difference between a reference and a candidate in every view.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Appearance {
+    /// With one intensity per triangle.
+    pub flat: ViewErrors,
+    /// With intensities interpolated between vertices.
+    pub gouraud: ViewErrors,
+}
+
+/// The picture that differs most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct WorstView {
+    /// Number of the view, from 0.
+    pub view: usize,
+    /// How it is shaded there.
+    pub shading: Interpolation,
+    /// How much it differs.
+    pub error: SquaredError,
+}
+
+impl Appearance {
+    /// The view and shading with the largest mean squared difference; flat before Gouraud, then the first of equals.
+    #[must_use]
+    pub fn worst(&self) -> WorstView {
+        let (flat, gouraud) = (self.flat.worst(), self.gouraud.worst());
+        let ((view, error), shading) = if gouraud.1.mean_square() > flat.1.mean_square() {
+            (gouraud, Interpolation::Gouraud)
+        } else {
+            (flat, Interpolation::Flat)
+        };
+        WorstView {
+            view,
+            shading,
+            error,
+        }
+    }
+}
+
+/// Draws the reference and all candidates in every view, flat and Gouraud, and compares: one [`Appearance`] for each
+/// candidate, in order.
+///
+/// The same bits for every number of threads. Cost: two pictures of each scene per view.
+///
+/// # Errors
+/// [`Error::Unsupported`] where a vertex of a scene has no finite place in the frame; [`Error::Usage`] for a set
+/// without views; [`Error::Interrupted`].
+pub fn appearance(
+    reference: &Scene,
+    candidates: &[Scene],
+    views: &ViewSet,
+    progress: &dyn Progress,
+) -> Result<Vec<Appearance>> {
+    for scene in std::iter::once(reference).chain(candidates) {
+        require_finite(scene)?;
+    }
+    let compare = |view: &View| -> Result<Vec<[SquaredError; 2]>> {
+        let shaded = [Interpolation::Flat, Interpolation::Gouraud].map(|i| with(view, i));
+        let expected = shaded.map(|view| luma_sums(reference, &view, views));
+        let samples = views.samples * views.samples;
+        let errors = |scene| -> Result<[SquaredError; 2]> {
+            let error = |i: usize| {
+                let actual = luma_sums(scene, &shaded[i], views);
+                squared_error(&expected[i], &actual, samples)
+            };
+            Ok([error(0)?, error(1)?])
+        };
+        candidates.iter().map(errors).collect()
+    };
+    let (count, group) = (views.views.len(), at_a_time(reference, candidates, views));
+    let mut found = Vec::with_capacity(count);
+    for (i, part) in views.views.chunks(group).enumerate() {
+        progress.step("compare pictures", (i * group) as u64, count as u64)?;
+        let errors: Vec<_> = part.par_iter().map(compare).collect();
+        for view in errors {
+            found.push(view?);
+        }
+    }
+    progress.step("compare pictures", count as u64, count as u64)?;
+    let errors = |candidate: usize, shading: usize| {
+        ViewErrors::new(found.iter().map(|view| view[candidate][shading]).collect())
+    };
+    (0..candidates.len())
+        .map(|candidate| {
+            Ok(Appearance {
+                flat: errors(candidate, 0)?,
+                gouraud: errors(candidate, 1)?,
+            })
+        })
+        .collect()
+}
+
+/// The pictures that [`appearance`] compared in one view, each pixel rounded to the mean of its samples: for eyes.
+///
+/// # Errors
+/// [`Error::Usage`] where the set has no such view.
+pub fn pictures<const N: usize>(
+    scenes: [&Scene; N],
+    views: &ViewSet,
+    view: usize,
+    shading: Interpolation,
+) -> Result<[Plane<u8>; N]> {
+    let count = views.views.len();
+    let view = views.views.get(view).ok_or_else(|| {
+        Error::Usage(format!(
+            "there is no view {view}; expected a number below {count}"
+        ))
+    })?;
+    let view = with(view, shading);
+    Ok(scenes.map(|scene| mean_luma(&luma_sums(scene, &view, views), views.samples)))
+}
+
+fn with(view: &View, interpolation: Interpolation) -> View {
+    let mut view = *view;
+    view.shading.interpolation = interpolation;
+    view
+}
+
+/// Views that may be drawn at the same time. It decides memory and speed, never a result.
+fn at_a_time(reference: &Scene, candidates: &[Scene], views: &ViewSet) -> usize {
+    let threads = rayon::current_num_threads();
+    let largest = std::iter::once(reference)
+        .chain(candidates)
+        .map(Scene::triangle_count)
+        .max()
+        .unwrap_or(0);
+    let parts = threads.min(largest / PART + 1) as u64;
+    let samples = u64::from(views.width * views.samples) * u64::from(views.height * views.samples);
+    let fitting = MEMORY / (parts * samples * SAMPLE_BYTES).max(1);
+    // Views take different time: several for each thread keep all of them busy.
+    (fitting as usize).clamp(1, 4 * threads)
+}
+
+fn require_finite(scene: &Scene) -> Result<()> {
+    let mut corners = scene.triangles().iter().flatten();
+    match corners.find(|&&v| !scene.positions()[v as usize].is_finite()) {
+        None => Ok(()),
+        Some(v) => Err(Error::Unsupported(format!(
+            "vertex {v} lies too far away to be seen together with the reference: check the units of both"
+        ))),
+    }
+}

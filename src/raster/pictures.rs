@@ -1,0 +1,342 @@
+//! The pictures of one view, and how a change of the mesh changes them.
+
+use glam::DVec3;
+
+use super::{
+    Added, Change, Face, FaceGeometry, Model, Paint, Plane, Projector, Region, ScreenVertex, Setup,
+    Shader,
+    buckets::{Buckets, Stamps},
+    draw::EMPTY,
+};
+use crate::{
+    num::fixed::level,
+    view::{Interpolation, View, ViewSet},
+};
+
+/// One view: its pictures and what is needed to change them.
+#[derive(Clone, Debug)]
+pub(super) struct ViewPictures {
+    view: View,
+    projector: Projector,
+    shader: Shader,
+    /// Every vertex on the screen.
+    screen: Vec<ScreenVertex>,
+    /// Flat shading of white triangles: the level of every triangle. Gouraud shading: empty.
+    levels: Vec<u8>,
+    /// Gouraud shading: the intensity of every vertex. Flat shading: empty.
+    intensities: Vec<f64>,
+    /// The pixels every triangle can touch, as it is entered in the buckets.
+    extents: Vec<Region>,
+    buckets: Buckets,
+    pub(super) keys: Plane<u64>,
+    pub(super) luma: Plane<u8>,
+    background: u8,
+}
+
+/// What one part of the views needs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PartScratch {
+    stamps: Stamps,
+    found: Vec<u32>,
+    moved: Vec<ScreenVertex>,
+    shaded: Vec<f64>,
+    setups: Vec<(u32, Setup, Paint)>,
+    added_extents: Vec<Region>,
+    keys: Vec<u64>,
+    luma: Vec<u8>,
+}
+
+impl PartScratch {
+    /// Buffers for a model with so many triangles.
+    pub(super) fn new(triangles: usize) -> Self {
+        Self {
+            stamps: Stamps::new(triangles),
+            ..Self::default()
+        }
+    }
+}
+
+impl ViewPictures {
+    pub(super) fn new(model: &Model, view: &View, set: &ViewSet) -> Self {
+        let projector = Projector::new(view, set);
+        let shader = Shader::new(view);
+        let image = projector.image();
+        let (width, height) = (image.x1 as u32, image.y1 as u32);
+        let gouraud = view.shading.interpolation == Interpolation::Gouraud;
+        let mut pictures = Self {
+            view: *view,
+            shader,
+            screen: model
+                .positions
+                .iter()
+                .map(|&p| projector.screen(p))
+                .collect(),
+            levels: Vec::new(),
+            intensities: if gouraud {
+                model
+                    .positions
+                    .iter()
+                    .zip(&model.normals)
+                    .map(|(&p, &n)| shader.intensity(p, n))
+                    .collect()
+            } else {
+                Vec::new()
+            },
+            extents: vec![Region::EMPTY; model.corners.len()],
+            buckets: Buckets::new(width, height),
+            keys: Plane::filled(width, height, EMPTY),
+            luma: Plane::filled(width, height, set.background),
+            background: set.background,
+            projector,
+        };
+        if !gouraud {
+            pictures.levels = model
+                .corners
+                .iter()
+                .map(|c| pictures.level(&FaceGeometry::new(c.map(|v| model.positions[v as usize]))))
+                .collect();
+        }
+        let (mut keys, mut luma) = (
+            pictures.keys.values().to_vec(),
+            pictures.luma.values().to_vec(),
+        );
+        for id in 0..model.corners.len() as u32 {
+            let mut extent = Region::EMPTY;
+            pictures
+                .face(model, id)
+                .pieces(&pictures.projector, view.cull, |setup, paint| {
+                    extent = extent.union(setup.bounds());
+                    draw(setup, paint, id, image, &mut keys, &mut luma);
+                });
+            pictures.extents[id as usize] = extent;
+            pictures.buckets.insert(id, extent);
+        }
+        pictures.keys.values_mut().copy_from_slice(&keys);
+        pictures.luma.values_mut().copy_from_slice(&luma);
+        pictures
+    }
+
+    /// The flat level of a white triangle.
+    fn level(&self, geometry: &FaceGeometry) -> u8 {
+        level(self.shader.intensity(geometry.centroid, geometry.normal))
+    }
+
+    /// A triangle as it is now.
+    #[inline]
+    fn face(&self, model: &Model, id: u32) -> Face {
+        let corners = model.corners[id as usize];
+        let positions = corners.map(|v| model.positions[v as usize]);
+        let paint = match (self.intensities.is_empty(), model.colors.get(id as usize)) {
+            (true, None) => Paint::Flat(self.levels[id as usize]),
+            (true, colors) => {
+                let g = FaceGeometry::new(positions);
+                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+            }
+            (false, colors) => {
+                Paint::gouraud(corners.map(|v| self.intensities[v as usize]), colors)
+            }
+        };
+        Face {
+            positions,
+            screen: corners.map(|v| self.screen[v as usize]),
+            paint,
+        }
+    }
+
+    /// An added triangle as it will be.
+    fn face_after(
+        &self,
+        model: &Model,
+        change: &Change<'_>,
+        added: &Added,
+        geometry: &(FaceGeometry, [DVec3; 3]),
+        (moved, shaded): (&[ScreenVertex], &[f64]),
+    ) -> Face {
+        let colors = (!model.colors.is_empty()).then_some(&added.colors);
+        let paint = if self.intensities.is_empty() {
+            Paint::flat(
+                self.shader
+                    .intensity(geometry.0.centroid, geometry.0.normal),
+                colors,
+            )
+        } else {
+            let intensity = |v: u32| match change.normals.iter().position(|n| n.0 == v) {
+                Some(i) => shaded[i],
+                None => self.intensities[v as usize],
+            };
+            Paint::gouraud(added.corners.map(intensity), colors)
+        };
+        let screen = added.corners.map(|v| {
+            change
+                .moved
+                .iter()
+                .position(|m| m.0 == v)
+                .map_or_else(|| self.screen[v as usize], |i| moved[i])
+        });
+        Face {
+            positions: geometry.1,
+            screen,
+            paint,
+        }
+    }
+
+    /// Draws what the region of the change shows after it into the scratch planes, and returns the region.
+    pub(super) fn redraw(
+        &self,
+        model: &Model,
+        change: &Change<'_>,
+        geometry: &[(FaceGeometry, [DVec3; 3])],
+        scratch: &mut PartScratch,
+    ) -> Region {
+        scratch.moved.clear();
+        scratch
+            .moved
+            .extend(change.moved.iter().map(|m| self.projector.screen(m.1)));
+        scratch.shaded.clear();
+        if !self.intensities.is_empty() {
+            scratch.shaded.extend(
+                change
+                    .normals
+                    .iter()
+                    .map(|&(v, n)| self.shader.intensity(model.position_after(change, v), n)),
+            );
+        }
+        let mut region = Region::EMPTY;
+        for &id in change.removed {
+            region = region.union(self.extents[id as usize]);
+        }
+        scratch.setups.clear();
+        scratch.added_extents.clear();
+        for (added, geometry) in change.added.iter().zip(geometry) {
+            let face = self.face_after(
+                model,
+                change,
+                added,
+                geometry,
+                (&scratch.moved, &scratch.shaded),
+            );
+            let mut extent = Region::EMPTY;
+            face.pieces(&self.projector, self.view.cull, |setup, paint| {
+                extent = extent.union(setup.bounds());
+                scratch.setups.push((added.id, *setup, *paint));
+            });
+            scratch.added_extents.push(extent);
+            region = region.union(extent);
+        }
+        let size = region.width() * region.height();
+        scratch.keys.clear();
+        scratch.keys.resize(size, EMPTY);
+        scratch.luma.clear();
+        scratch.luma.resize(size, self.background);
+        if size == 0 {
+            return region;
+        }
+        self.buckets.query(
+            region,
+            change.removed,
+            &mut scratch.stamps,
+            &mut scratch.found,
+        );
+        for &id in &scratch.found {
+            self.face(model, id)
+                .pieces(&self.projector, self.view.cull, |setup, paint| {
+                    draw(
+                        setup,
+                        paint,
+                        id,
+                        region,
+                        &mut scratch.keys,
+                        &mut scratch.luma,
+                    );
+                });
+        }
+        for (id, setup, paint) in &scratch.setups {
+            draw(
+                setup,
+                paint,
+                *id,
+                region,
+                &mut scratch.keys,
+                &mut scratch.luma,
+            );
+        }
+        region
+    }
+
+    /// The sum over the samples of the region whose luma differs between the picture and the scratch.
+    pub(super) fn difference(
+        &self,
+        region: Region,
+        scratch: &PartScratch,
+        weigh: impl Fn(usize, u8, u8) -> i64,
+    ) -> i64 {
+        let width = region.width();
+        let mut sum = 0;
+        for (y, row) in scratch.luma.chunks_exact(width.max(1)).enumerate() {
+            let start = (region.y0 as usize + y) * self.luma.width() as usize + region.x0 as usize;
+            let now = &self.luma.values()[start..start + width];
+            for (x, (&old, &new)) in now.iter().zip(row).enumerate() {
+                if old != new {
+                    sum += weigh(start + x, old, new);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Makes the change that [`ViewPictures::redraw`] has drawn.
+    pub(super) fn apply(
+        &mut self,
+        change: &Change<'_>,
+        geometry: &[(FaceGeometry, [DVec3; 3])],
+        region: Region,
+        scratch: &PartScratch,
+    ) {
+        for &id in change.removed {
+            self.buckets.remove(id, self.extents[id as usize]);
+            self.extents[id as usize] = Region::EMPTY;
+        }
+        for ((added, extent), geometry) in change
+            .added
+            .iter()
+            .zip(&scratch.added_extents)
+            .zip(geometry)
+        {
+            self.extents[added.id as usize] = *extent;
+            self.buckets.insert(added.id, *extent);
+            if !self.levels.is_empty() {
+                self.levels[added.id as usize] = self.level(&geometry.0);
+            }
+        }
+        for (&(v, _), &screen) in change.moved.iter().zip(&scratch.moved) {
+            self.screen[v as usize] = screen;
+        }
+        for (&(v, _), &intensity) in change.normals.iter().zip(&scratch.shaded) {
+            self.intensities[v as usize] = intensity;
+        }
+        let (width, stride) = (region.width(), self.luma.width() as usize);
+        let rows = scratch
+            .keys
+            .chunks_exact(width.max(1))
+            .zip(scratch.luma.chunks_exact(width.max(1)));
+        for (y, (keys, luma)) in rows.enumerate() {
+            let start = (region.y0 as usize + y) * stride + region.x0 as usize;
+            self.keys.values_mut()[start..start + width].copy_from_slice(keys);
+            self.luma.values_mut()[start..start + width].copy_from_slice(luma);
+        }
+    }
+}
+
+/// Draws a set-up triangle into planes that hold only `region`.
+#[inline]
+fn draw(setup: &Setup, paint: &Paint, id: u32, region: Region, keys: &mut [u64], luma: &mut [u8]) {
+    let width = region.width();
+    setup.fragments(region, |x, y, depth| {
+        let at = (y - region.y0) as usize * width + (x - region.x0) as usize;
+        let key = u64::from(depth) << 32 | u64::from(id);
+        if key < keys[at] {
+            keys[at] = key;
+            luma[at] = paint.luma(setup, x, y);
+        }
+    });
+}
