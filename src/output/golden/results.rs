@@ -248,13 +248,12 @@ fn image(own: &ImageOptions, target: Amount) -> Options {
     }
 }
 
-/// The mesh, how many collapses and evaluations led to it, and the bits of its error.
+/// The mesh, how many collapses led to it, and the bits of its error. Not how many evaluations: that is effort.
 fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
     collector.mesh(name, &outcome.mesh);
     let mut text = format!("{}", outcome.mesh.triangles().len());
     for phase in &outcome.phases {
-        let c = &phase.counters;
-        text += &format!(" {}-{}-{}", phase.method, c.collapses, c.evaluations);
+        text += &format!(" {}-{}", phase.method, phase.counters.collapses);
     }
     if let Some(rms) = outcome.error_rms {
         text += &format!(" {}", bits(&[rms]));
