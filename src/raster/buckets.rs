@@ -66,14 +66,22 @@ impl Stamps {
         }
     }
 
-    /// Two fresh stamps: for triangles to leave out, and for triangles met.
-    fn next(&mut self) -> (u32, u32) {
+    /// Begins a query that leaves out the given triangles.
+    pub(super) fn leave_out(&mut self, without: &[u32]) {
         if self.now > u32::MAX - 2 {
             self.of.fill(0);
             self.now = 0;
         }
         self.now += 2;
-        (self.now - 1, self.now)
+        for &id in without {
+            self.of[id as usize] = self.now - 1;
+        }
+    }
+
+    /// True for the triangles that the current query leaves out.
+    #[inline]
+    pub(super) fn is_left_out(&self, id: u32) -> bool {
+        self.of[id as usize] == self.now - 1
     }
 }
 
@@ -108,31 +116,19 @@ impl Buckets {
         }
     }
 
-    /// Puts into `found` every triangle whose extent meets `region` (not empty, inside the picture), but for those in
-    /// `without`; in no particular order.
-    pub(super) fn query(
-        &self,
-        region: Region,
-        without: &[u32],
-        stamps: &mut Stamps,
-        found: &mut Vec<u32>,
-    ) {
+    /// Puts into `found` every triangle whose extent meets `region` (not empty, inside the picture), but for those that
+    /// `stamps` leaves out; in no particular order. One query for every [`Stamps::leave_out`].
+    pub(super) fn query(&self, region: Region, stamps: &mut Stamps, found: &mut Vec<u32>) {
         found.clear();
-        let (left_out, met) = stamps.next();
-        for &id in without {
-            stamps.of[id as usize] = left_out;
-        }
+        let (left_out, met) = (stamps.now - 1, stamps.now);
         for id in self.columns.union(region.x0, region.x1) {
             let stamp = &mut stamps.of[id as usize];
             if *stamp != left_out {
                 *stamp = met;
             }
         }
-        found.extend(
-            self.rows
-                .union(region.y0, region.y1)
-                .filter(|&id| stamps.of[id as usize] == met),
-        );
+        let rows = self.rows.union(region.y0, region.y1);
+        found.extend(rows.filter(|&id| stamps.of[id as usize] == met));
     }
 }
 
@@ -177,7 +173,8 @@ mod tests {
             let mut found = Vec::new();
             stamps.now = u32::MAX - 3; // so that the second query starts the count again
             for _ in 0..2 {
-                buckets.query(region, &without, &mut stamps, &mut found);
+                stamps.leave_out(&without);
+                buckets.query(region, &mut stamps, &mut found);
                 found.sort_unstable();
                 let expected: Vec<u32> = (0..extents.len() as u32)
                     .filter(|id| !without.contains(id) && !extents[*id as usize].intersection(region).is_empty())

@@ -106,7 +106,7 @@ impl ViewPictures {
                 .face(model, id)
                 .pieces(&pictures.projector, view.cull, |setup, paint| {
                     extent = extent.union(setup.bounds());
-                    draw(setup, paint, id, image, &mut keys, &mut luma);
+                    draw(setup, paint, id, [image; 2], &mut keys, &mut luma);
                 });
             pictures.extents[id as usize] = extent;
             pictures.buckets.insert(id, extent);
@@ -223,39 +223,61 @@ impl ViewPictures {
             scratch.added_extents.push(extent);
             region = region.union(extent);
         }
-        let size = region.width() * region.height();
         scratch.keys.clear();
-        scratch.keys.resize(size, EMPTY);
         scratch.luma.clear();
-        scratch.luma.resize(size, self.background);
-        if size == 0 {
+        if region.is_empty() {
             return region;
         }
-        self.buckets.query(
-            region,
-            change.removed,
-            &mut scratch.stamps,
-            &mut scratch.found,
-        );
-        for &id in &scratch.found {
-            self.face(model, id)
-                .pieces(&self.projector, self.view.cull, |setup, paint| {
-                    draw(
-                        setup,
-                        paint,
-                        id,
-                        region,
-                        &mut scratch.keys,
-                        &mut scratch.luma,
-                    );
-                });
+        // Pixels that show no removed triangle keep what they show, unless an added one is nearer.
+        scratch.stamps.leave_out(change.removed);
+        let mut uncovered = Region::EMPTY;
+        for y in region.y0..region.y1 {
+            let start = y as usize * self.luma.width() as usize;
+            let row = start + region.x0 as usize..start + region.x1 as usize;
+            let shown = self.keys.values()[row.clone()]
+                .iter()
+                .zip(&self.luma.values()[row]);
+            for (x, (&key, &luma)) in (region.x0..).zip(shown) {
+                if key != EMPTY && scratch.stamps.is_left_out(key as u32) {
+                    scratch.keys.push(EMPTY);
+                    scratch.luma.push(self.background);
+                    let pixel = Region {
+                        x0: x,
+                        y0: y,
+                        x1: x + 1,
+                        y1: y + 1,
+                    };
+                    uncovered = uncovered.union(pixel);
+                } else {
+                    scratch.keys.push(key);
+                    scratch.luma.push(luma);
+                }
+            }
+        }
+        // The others show what the buckets find behind.
+        if !uncovered.is_empty() {
+            self.buckets
+                .query(uncovered, &mut scratch.stamps, &mut scratch.found);
+            for &id in &scratch.found {
+                self.face(model, id)
+                    .pieces(&self.projector, self.view.cull, |setup, paint| {
+                        draw(
+                            setup,
+                            paint,
+                            id,
+                            [uncovered, region],
+                            &mut scratch.keys,
+                            &mut scratch.luma,
+                        );
+                    });
+            }
         }
         for (id, setup, paint) in &scratch.setups {
             draw(
                 setup,
                 paint,
                 *id,
-                region,
+                [region; 2],
                 &mut scratch.keys,
                 &mut scratch.luma,
             );
@@ -327,11 +349,18 @@ impl ViewPictures {
     }
 }
 
-/// Draws a set-up triangle into planes that hold only `region`.
+/// Draws a set-up triangle into the part `within` of planes that hold `region`.
 #[inline]
-fn draw(setup: &Setup, paint: &Paint, id: u32, region: Region, keys: &mut [u64], luma: &mut [u8]) {
+fn draw(
+    setup: &Setup,
+    paint: &Paint,
+    id: u32,
+    [within, region]: [Region; 2],
+    keys: &mut [u64],
+    luma: &mut [u8],
+) {
     let width = region.width();
-    setup.fragments(region, |x, y, depth| {
+    setup.fragments(within, |x, y, depth| {
         let at = (y - region.y0) as usize * width + (x - region.x0) as usize;
         let key = u64::from(depth) << 32 | u64::from(id);
         if key < keys[at] {

@@ -1,8 +1,9 @@
 //! The bucket engine: un-rendering by drawing again what the buckets find (Lindstrom & Turk 2000, section 4.2.3).
 //!
-//! The region of a change is the bounding box of the triangles it removes and adds. All triangles that meet it, but
-//! for the removed ones, are drawn again into it, then the added ones. The published method, and the oracle for any
-//! faster engine.
+//! The region of a change is the bounding box of the triangles it removes and adds. Pixels there that show none of the
+//! removed triangles are the minimum of what they show and what is added. The others are cleared, and all triangles
+//! that meet their bounding box, but for the removed ones, are drawn again; then the added ones. The paper clears and
+//! draws the whole region, with the same result. The oracle for any faster engine.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,7 +1,10 @@
 //! Every integration test in one binary: a module per stage.
 
+mod appearance;
 mod architecture;
+mod cli;
 mod collapse;
+mod compare;
 mod findings;
 mod generate;
 mod golden;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Found, Options, has_extension, verdict};
+use super::{Found, Options, has_extension, table, verdict};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, report, terminal::Terminal},
@@ -45,24 +45,17 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let (expected, candidates) = images
         .split_first()
         .ok_or_else(|| Error::Internal("a reference without a file".into()))?;
-    let mut found = Vec::new();
-    for (path, actual) in options.candidates.iter().zip(candidates) {
-        let judgement = judge(&options.reference, expected, path, actual)?;
-        println!("{}: {}", path.display(), judgement.comparison);
-        if let Some(rms) = judgement.rms.filter(|_| !judgement.equal) {
-            println!(
-                "{}: luma differs by {rms:.4} levels RMS, PSNR {}",
-                path.display(),
-                super::table::number(judgement.psnr, 2)
-            );
-        }
-        found.push(judgement);
-    }
+    let found = options
+        .candidates
+        .iter()
+        .zip(candidates)
+        .map(|(path, actual)| judge(&options.reference, expected, path, actual))
+        .collect::<Result<Vec<_>>>()?;
+    let holds = found.iter().all(|j| options.holds(j.equal, j.rms));
     if let Some(path) = &options.difference {
         write_difference(options, path, expected, candidates)?;
         terminal.say(&format!("{}: written", path.display()));
     }
-    let holds = found.iter().all(|j| options.holds(j.equal, j.rms));
     let resolved = serde_json::json!({
         "reference": options.reference,
         "candidates": options.candidates,
@@ -71,8 +64,21 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         "difference": options.difference,
         "difference_scale": options.difference.as_ref().map(|_| options.difference_scale()),
     });
-    report(common, "compare", resolved, Found::new(found))?;
+    let findings = Found::new(found);
+    report(common, "compare", resolved, &findings)?;
+    findings.as_slice().iter().for_each(show);
     Ok(verdict(holds))
+}
+
+fn show(judgement: &Judgement<'_>) {
+    let name = judgement.candidate.display();
+    println!("{name}: {}", judgement.comparison);
+    if let Some(rms) = judgement.rms.filter(|_| !judgement.equal) {
+        println!(
+            "{name}: luma differs by {rms:.4} levels RMS, PSNR {}",
+            table::number(judgement.psnr, 2)
+        );
+    }
 }
 
 /// An option that would be ignored is an error.

@@ -133,8 +133,6 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         write_difference(options, path, &reference_scene, &scenes, &framed, &found)?;
         terminal.say(&format!("{}: written", path.display()));
     }
-    terminal.finish();
-    show(options, &reference_shape, &found);
     let holds = found
         .iter()
         .all(|j| options.holds(j.equal, Some(j.rms_flat.max(j.rms_gouraud))));
@@ -142,7 +140,9 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         reference: reference_shape,
         found: Found::new(found),
     };
-    report(common, "compare", resolved(options, &set), findings)?;
+    report(common, "compare", resolved(options, &set), &findings)?;
+    terminal.finish();
+    show(options, &findings.reference, findings.found.as_slice());
     Ok(verdict(holds))
 }
 

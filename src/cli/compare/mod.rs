@@ -47,12 +47,12 @@ pub(super) struct Options {
     #[arg(long)]
     equal: bool,
     /// Exit with code 1 unless every RMS, flat and Gouraud, is at most this many levels, 0 to 255
-    #[arg(long, value_name = "LEVELS")]
+    #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     max_rms: Option<f64>,
     /// Write expected, actual and difference of the worst view of every candidate, one row each
     #[arg(long, value_name = "FILE.png")]
     difference: Option<PathBuf>,
-    /// How much the picture exaggerates differences, 1 to 255 [default: 4]
+    /// How much the picture exaggerates differences, 1 to 255 [default: 2]
     #[arg(long, value_name = "FACTOR", requires = "difference", value_parser = clap::value_parser!(u8).range(1..))]
     difference_scale: Option<u8>,
 }
@@ -103,7 +103,7 @@ impl Options {
     }
 
     fn difference_scale(&self) -> u8 {
-        self.difference_scale.unwrap_or(4)
+        self.difference_scale.unwrap_or(2)
     }
 
     /// Whether what was asked for holds for a candidate; `rms` is `None` where there is none.
@@ -138,6 +138,13 @@ impl<T> Found<T> {
                 all.extend(last);
                 Self::Several { candidates: all }
             }
+        }
+    }
+
+    fn as_slice(&self) -> &[T] {
+        match self {
+            Self::One(only) => std::slice::from_ref(only),
+            Self::Several { candidates } => candidates,
         }
     }
 }
