@@ -21,11 +21,12 @@ pub fn mean_luma(sums: &Plane<u16>, samples: u32) -> Plane<u8> {
 #[must_use]
 pub fn mean_rgb(picture: &Plane<[u8; 3]>, samples: u32) -> Plane<[u8; 3]> {
     let [red, green, blue] = sum(picture, samples, |v| v);
-    let values = red.values().iter().zip(green.values()).zip(blue.values());
-    let pixels: Vec<[u8; 3]> = values
-        .map(|((&r, &g), &b)| [r, g, b].map(|v| mean(v, samples)))
-        .collect();
-    Plane::new(red.width(), red.height(), pixels).expect("a pixel for every sum")
+    let mut means = Plane::filled(red.width(), red.height(), [0; 3]);
+    let sums = red.values().iter().zip(green.values()).zip(blue.values());
+    for (pixel, ((&r, &g), &b)) in means.values_mut().iter_mut().zip(sums) {
+        *pixel = [r, g, b].map(|v| mean(v, samples));
+    }
+    means
 }
 
 fn mean(sum: u16, samples: u32) -> u8 {

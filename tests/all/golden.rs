@@ -1,6 +1,11 @@
 //! The golden set: that it holds, and that it would notice if it did not.
 
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
 
 use lodmark::{
     Silent,
@@ -206,4 +211,55 @@ fn a_damaged_record_is_read_with_gaps() {
     fs::write(folder.path().join(RECORD_NAME), "nonsense\n").expect("target is writable");
     let refused = check(folder.path(), &few_items(), folder.path()).expect_err("damaged");
     assert_eq!(refused.exit_code(), 3);
+}
+
+fn lodmark(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lodmark"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the command was built")
+}
+
+#[test]
+fn the_command_needs_files_to_check_itself() {
+    let folder = folder();
+    let done = lodmark(&["selfcheck", "--threads", "3"], folder.path());
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(0), "{said}");
+    assert!(said.contains("3 threads"), "{said}");
+    for group in GROUPS {
+        assert!(said.contains(group.name), "{said}");
+    }
+    let left = fs::read_dir(folder.path()).expect("readable").count();
+    assert_eq!(left, 0, "nothing is written");
+}
+
+#[test]
+fn the_command_accepts_a_golden_that_does_not_hold() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("golden")).expect("target is writable");
+    for entry in fs::read_dir(checked_in()).expect("readable") {
+        let path = entry.expect("readable").path();
+        let name = path.file_name().expect("a name");
+        fs::copy(&path, folder.path().join("golden").join(name)).expect("target is writable");
+    }
+    let record = folder.path().join("golden").join(RECORD_NAME);
+    let text = fs::read_to_string(&record).expect("readable");
+    let (name, value) = text
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .find(|(name, _)| *name == "pictures/probe/00/luma")
+        .expect("the golden of a picture");
+    let first = if value.starts_with('0') { "1" } else { "0" };
+    let planted = format!("{name} {first}{}", &value[1..]);
+    fs::write(&record, text.replace(&format!("{name} {value}"), &planted)).expect("writable");
+    let done = lodmark(&["golden", "check", "--out", "out"], folder.path());
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains(&format!("{planted}, found {value}").replacen(' ', ": expected ", 1)),
+        "{said}"
+    );
+    assert!(folder.path().join("out/mismatches.json").exists());
 }
