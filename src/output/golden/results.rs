@@ -2,21 +2,25 @@
 
 use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
-    Result, Silent,
-    mesh::{Materials, Mesh, MeshParts, generate},
+    Error, Result, Silent,
+    mesh::{Materials, Mesh, MeshParts, canonical, generate},
     metric::{
         luma::ViewErrors,
         silhouette::silhouette_histogram,
         surface::{OneSided, surface_distance},
     },
-    raster::{Plane, Scene, luma_sums},
+    output::{
+        png::Picture,
+        sheet::{Style, Tile, sheet},
+    },
+    raster::{Plane, Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Outcome, Replay,
         image::{ImageOptions, Start},
         quadric::QuadricOptions,
         simplify,
     },
-    view::{self, Interpolation, Projection, Shading, Specular, ViewsName, frame_of},
+    view::{self, Interpolation, Projection, Shading, Specular, ViewSet, ViewsName, frame_of},
 };
 
 /// The content of every generated mesh.
@@ -116,6 +120,45 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     limited.error_rms = Some(4.0);
     let outcome = simplify(&torus(), &limited, &Silent)?;
     outcome_items(collector, "torus/image-error-rms", &outcome);
+    side_by_side(collector)
+}
+
+/// The picture of the README: a model, and what images and geometry leave of it.
+fn side_by_side(collector: &mut Collector) -> Result<()> {
+    let mesh = canonical(&generate::interlocking_tori(32, 32)).mesh;
+    let target = Amount::Triangles(260);
+    let driving = ImageOptions {
+        size: 128,
+        start: Start::Triangles(1_040),
+        ..ImageOptions::default()
+    };
+    let by_images = simplify(&mesh, &image(&driving, target), &Silent)?.mesh;
+    let by_geometry = simplify(&mesh, &Options::memoryless(target), &Silent)?.mesh;
+    let frame = frame_of(&mesh);
+    let sphere = sphere_of(&mesh.enter_frame(frame))?;
+    let views = ViewSet {
+        width: 200,
+        height: 200,
+        ..ViewSet::evaluation(&sphere)?
+    };
+    let view = views
+        .views
+        .get(17)
+        .copied()
+        .ok_or_else(|| Error::Internal("24 views".into()))?;
+    let drawn = [mesh, by_images, by_geometry].map(|m| {
+        let scene = Scene::of(&m.enter_frame(frame));
+        mean_luma(&luma_sums(&scene, &view, &views), views.samples)
+    });
+    let tiles = drawn.each_ref().map(|picture| Tile { picture, label: "" });
+    let style = Style {
+        padding: 0,
+        paper: 128,
+        ..Style::default()
+    };
+    let picture = sheet(&tiles, 3, style)?;
+    collector.plane("tori-side-by-side/luma", &picture);
+    collector.shown(Picture::Grey(picture));
     Ok(())
 }
 
@@ -240,7 +283,7 @@ fn image(own: &ImageOptions, target: Amount) -> Options {
     Options {
         method: MethodOptions::Image(own.clone()),
         schedule: own.preset.schedule(),
-        ..Options::memoryless(target)
+        ..Options::image(target)
     }
 }
 
