@@ -1,0 +1,53 @@
+//! How long is a picture? ID buffers and luma of generated meshes, and of the dragon where it is at hand.
+
+use std::{hint::black_box, path::PathBuf};
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use lodmark::{
+    io,
+    mesh::{Mesh, generate},
+    raster::{self, Scene},
+    view::{Sphere, ViewSet, frame_of},
+};
+
+fn views(mesh: &Mesh, size: u32) -> (Scene, ViewSet) {
+    let mesh = mesh.enter_frame(frame_of(mesh));
+    let sphere = Sphere::of_mesh(&mesh).expect("triangles");
+    let set = ViewSet {
+        width: size,
+        height: size,
+        ..ViewSet::costs(&sphere).expect("views")
+    };
+    (Scene::of(&mesh), set)
+}
+
+fn pictures(c: &mut Criterion) {
+    let mut group = c.benchmark_group("raster");
+    group.sample_size(20);
+    let sphere = generate::icosphere(6);
+    let (scene, set) = views(&sphere, 480);
+    group.bench_function("ids of a sphere of 81,920 triangles at 480x480", |b| {
+        b.iter(|| black_box(raster::keys(&scene, &set.views[0], &set)));
+    });
+    group.bench_function(
+        "flat luma of a sphere of 81,920 triangles at 480x480",
+        |b| {
+            b.iter(|| black_box(raster::luma(&scene, &set.views[0], &set)));
+        },
+    );
+    let models = std::env::var_os("LODMARK_MODELS")
+        .map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from);
+    match io::read(&models.join("dragon.ply")) {
+        Ok(loaded) => {
+            let (scene, set) = views(&loaded.mesh, 480);
+            group.bench_function("ids of the dragon at 480x480", |b| {
+                b.iter(|| black_box(raster::keys(&scene, &set.views[0], &set)));
+            });
+        }
+        Err(e) => println!("the dragon is left out: {e}"),
+    }
+    group.finish();
+}
+
+criterion_group!(benches, pictures);
+criterion_main!(benches);
