@@ -188,3 +188,60 @@ impl ImageChange {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        collapse::{Changes, Ring, Rules, Site},
+        mesh::{canonical, generate},
+        view::frame_of,
+    };
+
+    #[test]
+    fn the_normals_of_a_change_are_those_of_the_changed_mesh_to_the_last_bit() {
+        let mesh = canonical(&generate::textured_torus(14, 9)).mesh;
+        let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
+        let mut tested = 0;
+        for edge in (0..live.edge_ids()).step_by(3) {
+            let mut ring = Ring::default();
+            if !ring.gather(&live, edge) {
+                continue;
+            }
+            let Ok(site) = Site::new(&live, &ring, Rules::default()) else {
+                continue;
+            };
+            let middle = site.fixed().unwrap_or_else(|| ring.midpoint());
+            let Ok(position) = site.admit(middle) else {
+                continue;
+            };
+            let mut patch = Patch::default();
+            site.patch(position, &mut patch);
+            let (slots, _) = Slots::of(&live);
+            let mut change = ImageChange::default();
+            change.fill(&slots, &live, &patch, true);
+            let before = change.normals.clone();
+            live.apply(&patch, &mut Changes::default());
+            change.fill(&slots, &live, &patch, true);
+            assert_eq!(
+                change.normals, before,
+                "the same before and after the commit"
+            );
+            let ids: Vec<u32> = (0..live.triangle_ids())
+                .filter(|&t| live.triangle(t).is_some())
+                .collect();
+            let triangles = ids.iter().filter_map(|&t| live.triangle(t)).collect();
+            let fresh = Scene::new(live.positions().to_vec(), triangles, ids);
+            for &(slot, normal) in &before {
+                let vertex = slots.vertices.iter().position(|&s| s == slot);
+                let expected = fresh.normals()[vertex.expect("a numbered vertex")];
+                assert_eq!(
+                    normal.to_array().map(f64::to_bits),
+                    expected.to_array().map(f64::to_bits)
+                );
+                tested += 1;
+            }
+        }
+        assert!(tested > 100, "{tested}");
+    }
+}
