@@ -1,5 +1,10 @@
 //! How long is a picture? ID buffers and luma of generated meshes, and of the dragon where it is at hand.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "the dragon may be absent, and whoever reads the figures should know"
+)]
+
 use std::{hint::black_box, path::PathBuf};
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,5 +1,10 @@
 //! How long is a run? Every method on a generated mesh of 20,480 triangles, and on the bunny where it is at hand.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "the bunny may be absent, and whoever reads the figures should know"
+)]
+
 use std::{hint::black_box, path::PathBuf};
 
 use criterion::{Criterion, criterion_group, criterion_main};

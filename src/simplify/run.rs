@@ -109,7 +109,9 @@ impl<'a> Run<'a> {
                 let method = Memoryless {
                     options: own.placement,
                 };
-                self.phase("memoryless", method, Target { triangles: start })?;
+                // A target above the start is reached before pictures take over.
+                let triangles = start.max(target.triangles);
+                self.phase("memoryless", method, Target { triangles })?;
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;

@@ -375,6 +375,25 @@ fn an_error_limit_is_never_exceeded_and_nearly_used_up() {
 }
 
 #[test]
+fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
+    let mesh = canonical(&generate::icosphere(3)).mesh;
+    let started = |triangles, start| {
+        let mut options = options(triangles);
+        options.method = MethodOptions::Image(ImageOptions {
+            size: 32,
+            start: Start::Triangles(start),
+            ..ImageOptions::default()
+        });
+        simplify::simplify(&mesh, &options, &Silent).expect("simplified")
+    };
+    let (direct, far) = (started(600, 300), started(100, 300));
+    assert!((599..=600).contains(&direct.mesh.triangles().len()));
+    let mut replay = simplify::Replay::new(&mesh, &far.history).expect("its own history");
+    replay.seek(600).expect("a level");
+    assert_eq!(replay.live().to_mesh().expect("valid"), direct.mesh);
+}
+
+#[test]
 fn a_method_without_images_refuses_an_error_measured_on_them() {
     let options = Options {
         error_rms: Some(1.0),
