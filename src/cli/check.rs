@@ -19,7 +19,7 @@ pub(super) struct Options {
 pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let mesh = source::read(&options.input, !options.no_weld, terminal)?;
     let findings = Findings::of(&mesh);
-    print!("{}", findings.report());
+    answer!("{}", findings.report().trim_end());
     report(
         common,
         "check",

@@ -77,12 +77,23 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let sheet_file = folder.join("sheet.png");
     png::write_grey(&sheet_file, &picture)?;
     json::write(&folder.join("report.json"), &found)?;
-    println!(
+    report(
+        common,
+        "demo",
+        serde_json::json!({ "folder": folder }),
+        serde_json::json!({ "results": found }),
+    )?;
+    answer!(
         "{:16} {:12} {:>9} {:>9} {:>9} {:>9}",
-        "scene", "method", "triangles", "rms flat", "gouraud", "distance"
+        "scene",
+        "method",
+        "triangles",
+        "rms flat",
+        "gouraud",
+        "distance"
     );
     for r in &found {
-        println!(
+        answer!(
             "{:16} {:12} {:>9} {:>9.2} {:>9.2} {:>9}",
             r.scene,
             r.method,
@@ -93,18 +104,12 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
                 .map_or_else(|| "-".into(), |d| format!("{:.4} %", 100.0 * d))
         );
     }
-    println!("\nlook at  {}", sheet_file.display());
-    println!(
+    answer!("\nlook at  {}", sheet_file.display());
+    answer!(
         "meshes   {}/*.ply, *.obj    figures  {}",
         folder.display(),
         folder.join("report.json").display()
     );
-    report(
-        common,
-        "demo",
-        serde_json::json!({ "folder": folder }),
-        serde_json::json!({ "results": found }),
-    )?;
     Ok(Verdict::Good)
 }
 

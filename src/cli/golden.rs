@@ -50,13 +50,13 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
                 serde_json::json!({ "goldens": items.len(), "mismatches": mismatches }),
             )?;
             if mismatches.is_empty() {
-                println!("{}: all {} goldens hold", place.dir.display(), items.len());
+                answer!("{}: all {} goldens hold", place.dir.display(), items.len());
                 return Ok(Verdict::Good);
             }
             for mismatch in &mismatches {
-                println!("{mismatch}");
+                answer!("{mismatch}");
             }
-            println!(
+            answer!(
                 "{}: {} of {} goldens do not hold; see {}",
                 place.dir.display(),
                 mismatches.len(),
@@ -71,12 +71,12 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         }
         Verb::Bless(place) => {
             golden::bless(&place.dir, &items)?;
-            println!("{}: recorded {} goldens", place.dir.display(), items.len());
+            answer!("{}: recorded {} goldens", place.dir.display(), items.len());
             Ok(Verdict::Good)
         }
         Verb::List => {
             for (name, value) in Record::of(&items).iter() {
-                println!("{name} {value}");
+                answer!("{name} {value}");
             }
             Ok(Verdict::Good)
         }

@@ -38,12 +38,12 @@ pub(super) fn run(options: &Options, common: &Common, _: &Terminal) -> Result<Ve
         bounding_radius: Sphere::of_mesh(&loaded.mesh).map(|s| s.radius),
         content_sha256: content_sha256(&loaded.mesh),
     };
-    print!("{}", contents.summary.report());
+    answer!("{}", contents.summary.report().trim_end());
     if let (Some([low, high]), Some(radius)) = (contents.bounds, contents.bounding_radius) {
-        println!("bounds              {low:?} to {high:?}");
-        println!("bounding radius     {radius}");
+        answer!("bounds              {low:?} to {high:?}");
+        answer!("bounding radius     {radius}");
     }
-    println!("content sha256      {}", contents.content_sha256);
+    answer!("content sha256      {}", contents.content_sha256);
     report(
         common,
         "inspect",

@@ -2,12 +2,12 @@
 //!
 //! Results go to stdout, talk to stderr. Exit codes: see [`Error::exit_code`]; 1 is a negative verdict.
 
-#![expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "a command talks to its user"
-)]
+/// A line of the result, on stdout. A command goes on where that fails, and [`answers::outcome`] tells in the end.
+macro_rules! answer {
+    ($($part:tt)*) => { $crate::cli::answers::line(format_args!($($part)*)) };
+}
 
+mod answers;
 mod check;
 mod compare;
 mod demo;
@@ -21,6 +21,7 @@ mod source;
 mod terminal;
 
 use std::{
+    io::Write,
     panic::{self, AssertUnwindSafe},
     path::PathBuf,
     process::ExitCode,
@@ -113,7 +114,8 @@ pub fn main() -> ExitCode {
         Err(_) => Error::Internal("the command panicked".into()),
     };
     Terminal::new(common.quiet).finish();
-    eprintln!("lodmark: {error}");
+    // Where stderr is gone there is still the exit code.
+    let _ = writeln!(std::io::stderr(), "lodmark: {error}");
     ExitCode::from(error.exit_code())
 }
 
@@ -159,7 +161,9 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         }
     };
     terminal.finish();
-    verdict
+    let verdict = verdict?;
+    answers::outcome()?;
+    Ok(verdict)
 }
 
 /// The frame of every JSON report: schema, command, version, options, then what the command found.

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 
 use super::{Common, Verdict, report, source, terminal::Terminal};
 use crate::{
-    Error, Progress, Result,
+    Error, Progress, Result, io,
     output::{hash, npy, png},
     raster::{self, Scene},
     view::{
@@ -184,17 +184,13 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
             "{dropped} triangles were not drawn: a coordinate is not finite in a view"
         ));
     }
-    view::file::write(options.folder.join("scene.json"), &set, &hashes)?;
+    let scene = view::file::to_json(&set, &hashes)?;
+    io::atomic::write(&options.folder.join("scene.json"), |file| {
+        file.write_all(scene.as_bytes())
+    })?;
     let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     npy::write_rows(&options.folder.join("positions.npy"), &positions)?;
     npy::write_rows(&options.folder.join("indices.npy"), mesh.triangles())?;
-    println!(
-        "{}: {} views of {} x {} pixels",
-        options.folder.display(),
-        set.views.len(),
-        set.width,
-        set.height
-    );
     let resolved =
         serde_json::json!({ "input": options.input, "views": options.views.to_string() });
     report(
@@ -203,5 +199,12 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         resolved,
         serde_json::json!({ "folder": options.folder, "dropped": dropped }),
     )?;
+    answer!(
+        "{}: {} views of {} x {} pixels",
+        options.folder.display(),
+        set.views.len(),
+        set.width,
+        set.height
+    );
     Ok(Verdict::Good)
 }

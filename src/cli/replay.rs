@@ -23,7 +23,7 @@ pub(super) struct Options {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// The level: at most this many triangles
-    #[arg(long, short = 't', value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = source::parse_triangles::<u32>)]
     triangles: u32,
     /// Exit with code 6, writing nothing, where the run did not get that far
     #[arg(long)]
@@ -32,8 +32,12 @@ pub(super) struct Options {
 
 pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     io::writable_format(&options.output)?;
-    let bytes =
-        std::fs::read(&options.history).map_err(|e| Error::io("read", &options.history, e))?;
+    source::require_outputs(
+        [Some(&options.output), common.json.as_ref()]
+            .into_iter()
+            .flatten(),
+    )?;
+    let bytes = io::bytes::read(&options.history)?;
     let history = History::from_bytes(&bytes, &options.history)?;
     // A recorded run welded its input or not; the hash of the content tells which.
     let mesh = [true, false].into_iter().find_map(|weld| {
@@ -74,13 +78,6 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     for note in io::write(&options.output, &level)? {
         terminal.say(&format!("{}: {note}", options.output.display()));
     }
-    println!(
-        "{}: {} triangles after {} of {} records",
-        options.output.display(),
-        level.triangles().len(),
-        replay.applied(),
-        history.len()
-    );
     let run: serde_json::Value =
         serde_json::from_str(&history.header().options).unwrap_or_default();
     report(
@@ -94,5 +91,12 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
             "content_sha256": content_sha256(&level),
         }),
     )?;
+    answer!(
+        "{}: {} triangles after {} of {} records",
+        options.output.display(),
+        level.triangles().len(),
+        replay.applied(),
+        history.len()
+    );
     Ok(Verdict::Good)
 }

@@ -52,7 +52,7 @@ impl Machine {
 
 pub(super) fn run(_: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let machine = Machine::here();
-    println!(
+    answer!(
         "lodmark {} on {}-{}, {} threads, {} build, instruction sets: {}",
         env!("CARGO_PKG_VERSION"),
         machine.architecture,
@@ -76,7 +76,7 @@ pub(super) fn run(_: &Options, common: &Common, terminal: &Terminal) -> Result<V
         } else {
             format!("{} DIFFER", found.len())
         };
-        println!(
+        answer!(
             "  {:9} {:4} {verdict:12} {}",
             group.name,
             items.len(),
@@ -85,9 +85,9 @@ pub(super) fn run(_: &Options, common: &Common, terminal: &Terminal) -> Result<V
         mismatches.extend(found);
     }
     for mismatch in &mismatches {
-        println!("{mismatch}");
+        answer!("{mismatch}");
     }
-    println!(
+    answer!(
         "{}",
         if mismatches.is_empty() {
             "every bit is as it should be"

@@ -32,20 +32,20 @@ pub(super) struct Options {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Simplify to at most this many triangles
-    #[arg(long, short = 't', value_name = "N")]
+    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = source::parse_triangles::<u64>)]
     triangles: Option<u64>,
     /// Simplify to at most this share of the triangles, above 0 and up to 1
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
     ratio: Option<f64>,
     /// Stop before the RMS luma difference over the driving views exceeds this, 0 to 255 (method image)
-    #[arg(long, value_name = "LEVELS")]
+    #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     error_rms: Option<f64>,
     /// What orders the collapses
     #[arg(long, value_enum, default_value_t = Method::Image)]
     method: Method,
-    /// Image method: the recipe
-    #[arg(long, value_enum, default_value_t = PresetName::Default)]
-    preset: PresetName,
+    /// Image method: the recipe [default: default]
+    #[arg(long, value_enum)]
+    preset: Option<PresetName>,
     /// Image method: dodecahedron, rhombicuboctahedron, octahedron:K, or a view file [default: dodecahedron]
     #[arg(long, value_name = "SET|FILE")]
     views: Option<ViewsName>,
@@ -194,7 +194,7 @@ impl Options {
                 ));
             }
         };
-        let preset = match self.preset {
+        let preset = match self.preset.unwrap_or(PresetName::Default) {
             PresetName::Paper => Preset::Paper,
             PresetName::Fast => Preset::Fast,
             PresetName::Default => Preset::Default,
@@ -267,6 +267,7 @@ impl Options {
     /// An option that the chosen method would ignore is an error.
     fn refuse_foreign(&self, method: &MethodOptions) -> Result<()> {
         let image = [
+            ("--preset", self.preset.is_some()),
             ("--views", self.views.is_some()),
             ("--size", self.size.is_some()),
             ("--shading", self.shading.is_some()),
@@ -308,6 +309,12 @@ impl Options {
 pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let resolved = options.resolve()?;
     io::writable_format(&options.output)?;
+    let outputs = [
+        Some(&options.output),
+        options.history.as_ref(),
+        common.json.as_ref(),
+    ];
+    source::require_outputs(outputs.into_iter().flatten())?;
     let mesh = source::read(&options.input, !options.no_weld, terminal)?;
     source::require_triangles(&options.input, &mesh)?;
     let triangles_in = mesh.triangles().len();
@@ -347,14 +354,14 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         phases: &outcome.phases,
         content_sha256: content_sha256(&outcome.mesh),
     };
-    println!(
+    report(common, "simplify", &outcome.options, &summary)?;
+    answer!(
         "{}: {} -> {} triangles, {} vertices",
         options.output.display(),
         summary.triangles_in,
         summary.triangles_out,
         summary.vertices_out
     );
-    report(common, "simplify", &outcome.options, summary)?;
     Ok(Verdict::Good)
 }
 

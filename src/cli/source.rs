@@ -1,6 +1,6 @@
 //! Reading a mesh as every command does: notes to the user, bit-equal positions welded.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::terminal::Terminal;
 use crate::{
@@ -43,4 +43,37 @@ pub(super) fn require_triangles(path: &Path, mesh: &Mesh) -> Result<()> {
         ));
     }
     Ok(())
+}
+
+/// Refuses files that cannot be written, and one name for two of them: before long work, not after it.
+pub(super) fn require_outputs<'a>(outputs: impl Iterator<Item = &'a PathBuf>) -> Result<()> {
+    let mut seen: Vec<&PathBuf> = Vec::new();
+    for path in outputs {
+        if seen.contains(&path) && !is_device(path) {
+            return Err(Error::Usage(format!(
+                "{} would be written twice; give each output a name of its own",
+                path.display()
+            )));
+        }
+        io::atomic::probe(path)?;
+        seen.push(path);
+    }
+    Ok(())
+}
+
+fn is_device(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|found| !found.is_file())
+}
+
+/// A number of triangles on the command line.
+pub(super) fn parse_triangles<T: TryFrom<i128>>(text: &str) -> Result<T, String> {
+    let number: i128 = text
+        .parse()
+        .map_err(|_| "expected a whole number of triangles, at least 1".to_string())?;
+    if number < 1 {
+        return Err(format!(
+            "{number} triangles make no mesh; expected at least 1"
+        ));
+    }
+    T::try_from(number).map_err(|_| format!("{number} is more than any mesh has"))
 }

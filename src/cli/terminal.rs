@@ -1,7 +1,7 @@
 //! Progress on stderr: a bar on a terminal, plain lines elsewhere; and the interrupt key.
 
 use std::{
-    io::IsTerminal,
+    io::{IsTerminal, Write},
     sync::{
         Mutex, Once,
         atomic::{AtomicBool, Ordering},
@@ -54,8 +54,8 @@ impl Terminal {
     pub(super) fn say(&self, line: &str) {
         match &self.bar {
             _ if self.quiet => {}
-            Some(bar) => bar.suspend(|| eprintln!("{line}")),
-            None => eprintln!("{line}"),
+            Some(bar) => bar.suspend(|| put(line)),
+            None => put(line),
         }
     }
 
@@ -90,9 +90,9 @@ impl Progress for Terminal {
         if new_phase || tenth > last.1 {
             *last = (phase.to_string(), tenth);
             if total == 0 {
-                eprintln!("{phase}");
+                put(phase);
             } else {
-                eprintln!("{phase}: {done} of {total}");
+                put(&format!("{phase}: {done} of {total}"));
             }
         }
     }
@@ -100,4 +100,9 @@ impl Progress for Terminal {
     fn interrupted(&self) -> bool {
         INTERRUPTED.load(Ordering::Relaxed)
     }
+}
+
+/// A line on stderr. Where stderr is gone nobody is there to be told.
+fn put(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }

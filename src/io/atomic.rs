@@ -18,24 +18,11 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     let failed = |source| Error::io("write", path, source);
     // Replacing a link would leave its target behind with the old content.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let existing = fs::metadata(&target).ok();
-    if let Some(found) = &existing {
-        if found.is_dir() {
-            return Err(failed(io::Error::other(
-                "it is a folder; expected the name of a file in it",
-            )));
-        }
-        if !found.is_file() {
-            return File::create(&target)
-                .and_then(|mut device| fill(&mut device, content))
-                .map_err(failed);
-        }
-        if found.permissions().readonly() {
-            return Err(failed(io::Error::new(
-                io::ErrorKind::PermissionDenied,
-                "the existing file is read-only; make it writable or choose another name",
-            )));
-        }
+    let existing = replaceable(&target).map_err(failed)?;
+    if existing.as_ref().is_some_and(|found| !found.is_file()) {
+        return File::create(&target)
+            .and_then(|mut device| fill(&mut device, content))
+            .map_err(failed);
     }
     let (mut file, temporary) = Temporary::beside(&target).map_err(failed)?;
     fill(&mut file, content)
@@ -48,6 +35,39 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     // Some systems refuse to rename an open file.
     drop(file);
     fs::rename(&temporary.0, &target).map_err(failed)
+}
+
+/// Whether [`write`] can begin: ask before long work. Nothing is left behind.
+///
+/// # Errors
+/// As [`write`].
+pub fn probe(path: &Path) -> Result<()> {
+    let failed = |source| Error::io("write", path, source);
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    match replaceable(&target).map_err(failed)? {
+        // Opening a pipe would wait for its reader.
+        Some(found) if !found.is_file() => Ok(()),
+        _ => Temporary::beside(&target).map(drop).map_err(failed),
+    }
+}
+
+/// What is already there, or why it cannot be replaced.
+fn replaceable(target: &Path) -> io::Result<Option<fs::Metadata>> {
+    let Ok(found) = fs::metadata(target) else {
+        return Ok(None);
+    };
+    if found.is_dir() {
+        return Err(io::Error::other(
+            "it is a folder; expected the name of a file in it",
+        ));
+    }
+    if found.is_file() && found.permissions().readonly() {
+        return Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            "the existing file is read-only; make it writable or choose another name",
+        ));
+    }
+    Ok(Some(found))
 }
 
 fn fill(file: &mut File, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {

@@ -1,8 +1,8 @@
 //! Which format a file has, and the way in and out of all of them.
 
-use std::{fmt, fs, path::Path};
+use std::{fmt, path::Path};
 
-use super::{atomic, obj_read, obj_write, ply_read, ply_write, stl_read, stl_write};
+use super::{atomic, bytes, obj_read, obj_write, ply_read, ply_write, stl_read, stl_write};
 use crate::{Error, Result, mesh::Mesh};
 
 /// A file format.
@@ -130,9 +130,9 @@ pub struct Loaded {
 /// Reads the mesh file at `path`; its format is that of the extension, unless the content says otherwise.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be read, [`Error::Unsupported`] for glTF, otherwise as [`read_bytes`].
+/// As [`bytes::read`], [`Error::Unsupported`] for glTF, otherwise as [`read_bytes`].
 pub fn read(path: &Path) -> Result<Loaded> {
-    let bytes = fs::read(path).map_err(|e| Error::io("read", path, e))?;
+    let bytes = bytes::read(path)?;
     let named = Format::of_extension(path);
     let found = Format::of_content(&bytes);
     let is_gltf = path

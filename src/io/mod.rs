@@ -6,6 +6,7 @@
 //! files other than the one named (material libraries), are never touched.
 
 pub mod atomic;
+pub mod bytes;
 mod decimal;
 mod format;
 mod obj_read;

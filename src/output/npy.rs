@@ -4,11 +4,15 @@
 //! Reading is own code, because `npyz` 0.9 panics on a shape whose product overflows.
 //! Limits on reading: the array must be as large as the file says, so a small file cannot ask for much memory.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use npyz::{DType, TypeStr, WriterBuilder};
 
-use crate::{Error, Result, io::atomic, raster::Plane};
+use crate::{
+    Error, Result,
+    io::{atomic, bytes},
+    raster::Plane,
+};
 
 /// A number that arrays are made of.
 pub trait Element: Copy + npyz::Serialize {
@@ -107,7 +111,7 @@ pub fn read_rows<T: Element>(path: &Path) -> Result<Vec<[T; 3]>> {
 
 /// The values, rows and columns of a two-dimensional array.
 fn read<T: Element>(path: &Path) -> Result<(Vec<T>, u64, u64)> {
-    let bytes = fs::read(path).map_err(|e| Error::io("read", path, e))?;
+    let bytes = bytes::read(path)?;
     let header = Header::of(&bytes).ok_or_else(|| {
         Error::input(
             path,

@@ -12,7 +12,7 @@
 //! with the digits that give the same double back. Lengths are in the units of the mesh file. Rows of images go down;
 //! depth is z / w. `sha256` (optional) names the images that belong to a view.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -184,28 +184,20 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
 /// [`Error::Io`], or as [`from_json`].
 pub fn read(path: impl AsRef<Path>) -> Result<ViewSet> {
     let path = path.as_ref();
-    let size = fs::metadata(path)
-        .map_err(|e| Error::io("read", path, e))?
-        .len();
-    if size > SIZE_LIMIT {
+    let mut bytes = Vec::new();
+    // By what is read, not by what is claimed: a pipe or device has no size.
+    File::open(path)
+        .and_then(|file| file.take(SIZE_LIMIT + 1).read_to_end(&mut bytes))
+        .map_err(|e| Error::io("read", path, e))?;
+    if bytes.len() as u64 > SIZE_LIMIT {
         return Err(Error::input(
             path,
-            format!("{size} bytes; expected a view file of at most {SIZE_LIMIT}"),
+            format!("more than {SIZE_LIMIT} bytes; expected a view file of at most that"),
         ));
     }
-    let bytes = fs::read(path).map_err(|e| Error::io("read", path, e))?;
     let text = std::str::from_utf8(&bytes)
         .map_err(|e| Error::input(path, format!("{e}; expected a view file (JSON)")))?;
     from_json(text, path)
-}
-
-/// Writes a view file; see [`to_json`].
-///
-/// # Errors
-/// [`Error::Io`], or as [`to_json`].
-pub fn write(path: impl AsRef<Path>, set: &ViewSet, hashes: &[ImageHashes]) -> Result<()> {
-    let path = path.as_ref();
-    fs::write(path, to_json(set, hashes)?).map_err(|e| Error::io("write", path, e))
 }
 
 /// The bits of a matrix, row by row.

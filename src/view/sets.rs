@@ -39,8 +39,9 @@ impl ViewSet {
             .collect();
         let views = views.filter(|views| !views.is_empty()).ok_or_else(|| {
             Error::Usage(format!(
-                "no views from {count} directions onto a sphere of radius {} around ({}, {}, {}); expected at least \
-                 one direction, none of them zero, and finite numbers",
+                "no views of {width} x {height} pixels from {count} directions onto a sphere of radius {:e} around \
+                 ({:e}, {:e}, {:e}); expected at least one pixel and one direction, none of them zero, and a sphere that \
+                 is neither too small nor too large for doubles",
                 sphere.radius, sphere.center.x, sphere.center.y, sphere.center.z
             ))
         })?;

@@ -22,6 +22,7 @@ mod quadric;
 mod raster;
 mod seams;
 mod shapes;
+mod streams;
 mod unrender;
 mod view;
 

@@ -72,9 +72,9 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
 
 fn show(judgement: &Judgement<'_>) {
     let name = judgement.candidate.display();
-    println!("{name}: {}", judgement.comparison);
+    answer!("{name}: {}", judgement.comparison);
     if let Some(rms) = judgement.rms.filter(|_| !judgement.equal) {
-        println!(
+        answer!(
             "{name}: luma differs by {rms:.4} levels RMS, PSNR {}",
             table::number(judgement.psnr, 2)
         );

@@ -343,9 +343,9 @@ fn show(options: &Options, reference: &Shape<'_>, found: &[Judgement<'_>]) {
         ]);
         rows.push(row);
     }
-    println!("{}", table::aligned(&rows));
+    answer!("{}", table::aligned(&rows));
     for j in found {
-        println!(
+        answer!(
             "{}: worst in view {}, {}: RMS {:.4}",
             j.candidate.file.display(),
             j.worst.view,
@@ -372,6 +372,6 @@ fn show_views(judgement: &Judgement<'_>) {
             table::number(p.psnr_gouraud, 2),
         ]);
     }
-    println!("{}", judgement.candidate.file.display());
-    println!("{}", table::aligned(&rows));
+    answer!("{}", judgement.candidate.file.display());
+    answer!("{}", table::aligned(&rows));
 }

@@ -13,6 +13,9 @@ use crate::{
     view::{self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName},
 };
 
+/// Most pixels of all driving images together; every one takes some ten bytes throughout the run.
+const PIXEL_LIMIT: u64 = 1 << 27;
+
 /// Where the image-driven part of a run begins; the memoryless method gets there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -137,7 +140,8 @@ impl ImageOptions {
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
-    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel.
+    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel, and for more
+    /// pixels in all than 2^27.
     pub fn views(&self, original: &Mesh, frame: Frame) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
@@ -147,6 +151,16 @@ impl ImageOptions {
             [self.size; 2],
             Projection::Perspective,
         )?;
+        let pixels = set.views.len() as u64 * u64::from(set.width) * u64::from(set.height);
+        if pixels > PIXEL_LIMIT {
+            return Err(Error::Unsupported(format!(
+                "{} driving images of {} x {} pixels do not fit into memory; expected at most {PIXEL_LIMIT} pixels in \
+                 all, so choose fewer or smaller images",
+                set.views.len(),
+                set.width,
+                set.height
+            )));
+        }
         if let ViewsName::File(path) = &self.views {
             if set.samples != 1 {
                 return Err(Error::Unsupported(format!(

@@ -62,7 +62,8 @@ fn a_view_file_is_read_from_where_it_was_written() {
     let path = folder.path().join("views.json");
     let set = ViewSet::evaluation(&unit_sphere()).expect("views");
     let hash = file::ImageHashes::from([("luma".to_owned(), "00ff".to_owned())]);
-    file::write(&path, &set, &vec![hash; 24]).expect("written");
+    let text = file::to_json(&set, &vec![hash; 24]).expect("finite");
+    std::fs::write(&path, text).expect("written");
     let name: ViewsName = path.to_string_lossy().parse().expect("a file");
     let read = resolve(&name, &unit_sphere(), [1, 1], Projection::Perspective).expect("our own");
     assert_eq!(read, set);
