@@ -18,10 +18,10 @@ pub fn mean_luma(sums: &Plane<u16>, samples: u32) -> Plane<u8> {
 }
 
 /// The mean colour of every pixel, rounded to nearest, from colours at sample resolution.
-#[must_use]
 ///
 /// # Panics
 /// Never: the planes that the sums come from have one size.
+#[must_use]
 pub fn mean_rgb(picture: &Plane<[u8; 3]>, samples: u32) -> Plane<[u8; 3]> {
     let [red, green, blue] = sum(picture, samples, |v| v);
     let mut means = Plane::filled(red.width(), red.height(), [0; 3]);
