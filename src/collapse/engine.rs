@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::{
     Changes, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule, Site,
+    legality::RING_LIMIT,
     queue::{self, Front, Queue},
 };
-use crate::{Progress, Result};
+use crate::{Error, Progress, Result};
 
 /// When a run has done enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,6 +167,9 @@ impl<M: Method> Engine<M> {
             if self.live.triangle_count() <= target.triangles {
                 break End::TargetReached;
             }
+            if progress.interrupted() {
+                return Err(Error::Interrupted);
+            }
             match queue.front() {
                 None => {
                     let blocked = self.blocked();
@@ -222,6 +226,11 @@ impl<M: Method> Engine<M> {
         queue.next_round();
         let spokes = self.ring.spokes.iter().map(|s| s.vertex);
         for v in std::iter::once(vertex).chain(spokes) {
+            // No collapse makes such a vertex, so none of its edges was ever in the queue; they enter it with the
+            // collapse that brings the vertex below the limit.
+            if self.live.valence(v) > RING_LIMIT {
+                continue;
+            }
             for e in self.live.edges_at(v) {
                 if queue.stale(&self.live, e) {
                     touched.push(e);
@@ -348,6 +357,12 @@ impl<M: Method> Engine<M> {
     }
 }
 
+/// True where too many faces touch an edge to look at them.
+fn crowded(live: &LiveMesh, id: u32) -> bool {
+    live.edge(id)
+        .is_some_and(|[u, w]| live.valence(u) + live.valence(w) > RING_LIMIT)
+}
+
 fn evaluate<M: Method>(
     live: &LiveMesh,
     method: &M,
@@ -356,6 +371,9 @@ fn evaluate<M: Method>(
     ring: &mut Ring,
     scratch: &mut M::Scratch,
 ) -> Result<Proposal, Refusal> {
+    if crowded(live, id) {
+        return Err(Refusal::Valence);
+    }
     if !ring.gather(live, id) {
         return Err(Refusal::Unplaced);
     }

@@ -63,7 +63,13 @@ macro_rules! refusals {
     };
 }
 
+/// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
+/// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit.
+pub const RING_LIMIT: usize = 1024;
+
 refusals! {
+    /// More than [`RING_LIMIT`] faces touch the edge.
+    Valence => "valence",
     /// Nothing would be left of the mesh.
     LastTriangle => "last-triangle",
     /// A common neighbour of both ends forms no face with them: a hole or handle would close.

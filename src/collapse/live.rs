@@ -241,6 +241,16 @@ impl LiveMesh {
         self.faces_at.of(vertex).iter().copied()
     }
 
+    /// Number of triangles at a vertex.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[inline]
+    #[must_use]
+    pub fn valence(&self, vertex: u32) -> usize {
+        self.faces_at.of(vertex).len()
+    }
+
     /// The edges at a vertex, in no particular order.
     ///
     /// # Panics

@@ -37,10 +37,10 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     fs::rename(&temporary.0, &target).map_err(failed)
 }
 
-/// Whether [`write`] can begin: ask before long work. Nothing is left behind.
+/// Whether [`write()`] can begin: ask before long work. Nothing is left behind.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn probe(path: &Path) -> Result<()> {
     let failed = |source| Error::io("write", path, source);
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());

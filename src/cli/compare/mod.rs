@@ -35,7 +35,7 @@ pub(super) struct Options {
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
     /// Points on each surface that distances are measured at [default: 500000]
-    #[arg(long, value_name = "N", conflicts_with = "no_distance", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with = "no_distance", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     distance_samples: Option<u32>,
     /// Do not measure distances
     #[arg(long)]
