@@ -14,7 +14,7 @@ use crate::{
         sheet::{Style, Tile, sheet},
     },
     raster::{self, Plane, Scene},
-    simplify::{Amount, Options as RunOptions, simplify},
+    simplify::{Amount, MethodOptions, Options as RunOptions, image::ImageOptions, simplify},
     view::{Sphere, View, ViewSet, frame_of},
 };
 
@@ -148,7 +148,7 @@ fn scene(
     let mut differences = vec![(reference.map(|_| 255), String::new())];
     let amount = Amount::Ratio(share);
     let methods = [
-        RunOptions::image(amount),
+        by_images(amount),
         RunOptions::memoryless(amount),
         RunOptions::quadric(amount),
     ];
@@ -191,6 +191,16 @@ fn scene(
     tiles.extend(pictures);
     tiles.extend(differences);
     Ok(())
+}
+
+/// Driven by images of a quarter of the usual pixels, so that the demo ends within a minute.
+fn by_images(amount: Amount) -> RunOptions {
+    let mut options = RunOptions::image(amount);
+    options.method = MethodOptions::Image(ImageOptions {
+        size: 128,
+        ..ImageOptions::default()
+    });
+    options
 }
 
 fn picture(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u8> {
