@@ -65,7 +65,7 @@ macro_rules! refusals {
 
 /// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
 /// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit.
-pub const RING_LIMIT: usize = 1024;
+pub const RING_LIMIT: usize = 512;
 
 refusals! {
     /// More than [`RING_LIMIT`] faces touch the edge.
