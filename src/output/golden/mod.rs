@@ -6,7 +6,7 @@
 //!
 //! The cases use generated meshes, so that they need no files: [`Record::embedded`] is the text file as it was when
 //! this program was built, and `lodmark selfcheck` holds the machine it runs on against it. The whole set takes about
-//! a second in release, so that slow machines and emulators can run it too.
+//! three seconds in release, so that slow machines and emulators can run it too.
 
 mod files;
 mod folder;

@@ -21,7 +21,7 @@ const PIXEL_LIMIT: u64 = 1 << 27;
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Ten times the target as in Table 1 of the paper for the bunny, but above 32,768 triangles no more than four
-    /// times, as there for the dragon; 65,536 where only an error limits the run.
+    /// times, as there for the dragon; 65,536 where only an error limits the run (or the target is 1).
     #[default]
     Auto,
     /// At this number of triangles.
@@ -79,7 +79,7 @@ pub struct ImageOptions {
     /// shading and culling.
     #[serde(with = "views_text")]
     pub views: ViewsName,
-    /// Width and height of every image, in pixels; 1 to 4096.
+    /// Width and height of every image, in pixels; 1 to 4096, and all views together at most 2^27 pixels.
     pub size: u32,
     /// Flat or Gouraud.
     pub shading: Interpolation,
