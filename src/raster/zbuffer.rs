@@ -197,6 +197,15 @@ fn draw_small(
     stride: i32,
     keys: &mut [u64],
 ) -> bool {
+    // No depth of the triangle is nearer than its nearest corner.
+    let depth_min = a.depth.min(b.depth).min(c.depth);
+    let nearest = u64::from(depth_min) << 32 | u64::from(id);
+    if bounds.x1 - bounds.x0 == 1
+        && bounds.y1 - bounds.y0 == 1
+        && keys[bounds.y0 as usize * stride as usize + bounds.x0 as usize] <= nearest
+    {
+        return true;
+    }
     let difference = |from: i32, to: i32| i64::from(to - from);
     let mut area =
         difference(a.x, b.x) * difference(a.y, c.y) - difference(a.y, b.y) * difference(a.x, c.x);
@@ -207,7 +216,6 @@ fn draw_small(
         (b, c) = (c, b);
         area = -area;
     }
-    let depth_min = a.depth.min(b.depth).min(c.depth);
     let above = [a, b, c].map(|p| i64::from(p.depth - depth_min));
     let depth_range = above[0].max(above[1]).max(above[2]);
     if area.leading_zeros() + depth_range.leading_zeros() < 66 {
@@ -227,7 +235,6 @@ fn draw_small(
     let (mut row0, x0, y0, bias0) = edge(b, c);
     let (mut row1, x1, y1, bias1) = edge(c, a);
     let (mut row2, x2, y2, bias2) = edge(a, b);
-    let nearest = u64::from(depth_min) << 32 | u64::from(id);
     for y in bounds.y0..bounds.y1 {
         let (mut w0, mut w1, mut w2) = (row0, row1, row2);
         let start = y as usize * stride as usize;
