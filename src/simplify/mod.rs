@@ -2,7 +2,7 @@
 //!
 //! [`simplify`] takes a mesh and [`Options`] and gives an [`Outcome`]: the mesh, the history of its making and why it
 //! ended. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
-//! methods use as well.
+//! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
 pub mod image;
 pub mod memoryless;
@@ -10,6 +10,7 @@ mod options;
 mod outcome;
 pub mod quadric;
 mod run;
+pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
 pub use crate::collapse::{History, Replay};

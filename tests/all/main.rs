@@ -8,6 +8,7 @@ mod compare;
 mod findings;
 mod generate;
 mod golden;
+mod guided;
 mod history;
 mod hostile;
 mod image;
