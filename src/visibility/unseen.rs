@@ -129,7 +129,7 @@ impl DepthTest {
             let start = y * self.size;
             self.depths[start + column.saturating_sub(1)..=start + (column + 1).min(last)]
                 .iter()
-                .any(|d| (d - depth).abs() <= NEIGHBOR_TOLERANCE)
+                .any(|d| depth <= d + NEIGHBOR_TOLERANCE)
         })
     }
 }
