@@ -84,18 +84,11 @@ pub(super) fn count(
     // A mesh that is one point has no size to compare with.
     let limit = limit.filter(|&l| l > 0.0);
     let pieces = Pieces::new(positions, mesh.triangles(), limit)?;
-    let areas: Vec<f64> = if pieces.are_whole() {
-        Vec::new()
-    } else {
-        (0..pieces.triangles.len())
-            .map(|p| pieces.area(p))
-            .collect()
-    };
     let normals: Vec<DVec3> = mesh
         .triangles()
         .iter()
         .map(|t| {
-            let [a, b, c] = t.map(|v| pieces.positions[v as usize]);
+            let [a, b, c] = t.map(|v| pieces.scene.positions()[v as usize]);
             math::unit((b - a).cross(c - a)).unwrap_or(DVec3::ZERO)
         })
         .collect();
@@ -118,9 +111,9 @@ pub(super) fn count(
                 let total = views.len() as u64;
                 progress.step("visibility", done.fetch_add(1, Ordering::Relaxed), total)?;
                 let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-                let mut sight = lock().pop().unwrap_or_default();
+                let mut sight = lock().pop().unwrap_or_else(Sight::new);
                 let camera = (&cameras, view as usize);
-                sight.look(&pieces, &areas, camera, options, parts);
+                sight.look(&pieces, camera, options, parts);
                 lock().push(sight);
                 Ok(())
             })?;

@@ -13,7 +13,6 @@ mod cameras;
 mod counts;
 mod measure;
 mod options;
-mod picture;
 mod sight;
 mod subdivide;
 mod survey;

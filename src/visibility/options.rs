@@ -131,7 +131,7 @@ impl Options {
             )));
         }
         if let Some(limit) = self.edge_limit
-            && !(limit >= 1.0 && limit < f64::INFINITY)
+            && !(1.0..f64::INFINITY).contains(&limit)
         {
             return Err(Error::Usage(format!(
                 "pieces with edges of {limit} pixels; expected at least 1"

@@ -4,90 +4,116 @@
 //! that show it (their future work); for a face in pieces the mean over its area. A face of which anything is seen has
 //! at least one part, rounded down otherwise, so that "never seen" and "always seen" stay exact.
 
-use super::{
-    Options,
-    cameras::Cameras,
-    picture::{EMPTY, IdPicture},
-    subdivide::Pieces,
-    unseen::DepthTest,
+use super::{Options, cameras::Cameras, subdivide::Pieces, unseen::DepthTest};
+use crate::{
+    raster::{Face, Paint, Projector, ZBuffer},
+    view::Cull,
 };
 
 /// All of a triangle is seen.
 pub(super) const FULL: u16 = 1 << 15;
 
+/// The key of a pixel that shows nothing.
+pub(super) const EMPTY: u64 = u64::MAX;
+
 /// Buffers of one thread.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Sight {
-    picture: IdPicture,
+    buffer: ZBuffer,
     test: DepthTest,
     /// Number of pixels that show every piece.
     shown: Vec<u32>,
 }
 
+/// One view while its faces are judged.
+struct Look<'a> {
+    sight: &'a Sight,
+    pieces: &'a Pieces,
+    projector: Projector,
+    fractional: bool,
+}
+
 impl Sight {
+    /// Empty buffers.
+    pub(super) fn new() -> Self {
+        Self {
+            // Views are drawn in parallel.
+            buffer: ZBuffer::new(1),
+            test: DepthTest::default(),
+            shown: Vec::new(),
+        }
+    }
+
     /// Looks at the pieces from camera `index`, and writes the part of every face that it sees.
     pub(super) fn look(
         &mut self,
         pieces: &Pieces,
-        areas: &[f64],
         (cameras, index): (&Cameras, usize),
         options: &Options,
         faces: &mut [u16],
     ) {
         let view = &cameras.set.views[index];
-        self.picture
-            .draw(pieces, view, &cameras.set, options.fractional);
+        self.buffer.draw(&pieces.scene, view, &cameras.set);
+        let keys = self.buffer.keys();
         self.shown.clear();
-        self.shown.resize(pieces.triangles.len(), 0);
-        for &key in &self.picture.keys {
+        self.shown.resize(pieces.scene.triangle_count(), 0);
+        for &key in keys.values() {
             if key != EMPTY {
                 self.shown[key as u32 as usize] += 1;
             }
         }
-        self.test
-            .prepare(options.unseen, pieces, view, &self.picture, options.size);
+        self.test.prepare(options.unseen, &pieces.scene, view, keys);
+        let look = Look {
+            sight: self,
+            pieces,
+            projector: Projector::new(view, &cameras.set),
+            fractional: options.fractional,
+        };
         if pieces.are_whole() {
             for (piece, part) in faces.iter_mut().enumerate() {
-                *part = self.part(pieces, piece);
+                *part = look.part(piece);
             }
             return;
         }
         for (face, part) in faces.iter_mut().enumerate() {
             let range = pieces.of(face);
             *part = if range.len() == 1 {
-                self.part(pieces, range.start)
+                look.part(range.start)
             } else {
-                self.mean(pieces, range, areas)
+                look.mean(range)
             };
         }
     }
+}
 
+impl Look<'_> {
     /// The seen part of a piece.
     #[inline]
-    fn part(&self, pieces: &Pieces, piece: usize) -> u16 {
-        let shown = self.shown[piece];
-        if shown > 0 {
-            match self.picture.covered.get(piece) {
-                Some(&covered) => share(shown, covered),
-                None => FULL,
-            }
-        } else if self.test.sees(pieces.triangles[piece]) {
-            FULL
+    fn part(&self, piece: usize) -> u16 {
+        let shown = self.sight.shown[piece];
+        if shown == 0 {
+            let corners = self.pieces.scene.triangles()[piece];
+            let seen = self.sight.test.sees(corners)
+                && !(self.sight.test.needs_gap(corners) && self.covered_samples(piece) > 0);
+            if seen { FULL } else { 0 }
+        } else if self.fractional {
+            let all = u64::from(self.covered_samples(piece).max(shown));
+            ((u64::from(shown) * u64::from(FULL) / all) as u16).max(1)
         } else {
-            0
+            FULL
         }
     }
 
     /// The seen part of a face in several pieces.
-    fn mean(&self, pieces: &Pieces, range: std::ops::Range<usize>, areas: &[f64]) -> u16 {
+    fn mean(&self, range: std::ops::Range<usize>) -> u16 {
         let (mut seen, mut all) = (0.0, 0.0);
         let (mut anything, mut everything) = (false, true);
         for piece in range {
-            let part = self.part(pieces, piece);
+            let (part, area) = (self.part(piece), self.pieces.area(piece));
             anything |= part > 0;
             everything &= part == FULL;
-            seen += areas[piece] * f64::from(part);
-            all += areas[piece];
+            seen += area * f64::from(part);
+            all += area;
         }
         if everything || (anything && all <= 0.0) {
             FULL
@@ -98,10 +124,20 @@ impl Sight {
             0
         }
     }
-}
 
-/// `shown` of `covered` samples in parts of [`FULL`].
-fn share(shown: u32, covered: u32) -> u16 {
-    let parts = u64::from(shown) * u64::from(FULL) / u64::from(covered.max(1));
-    (parts as u16).clamp(1, FULL)
+    /// How many samples a piece covers, whatever they show.
+    fn covered_samples(&self, piece: usize) -> u32 {
+        let scene = &self.pieces.scene;
+        let positions = scene.triangles()[piece].map(|v| scene.positions()[v as usize]);
+        let face = Face {
+            positions,
+            screen: positions.map(|p| self.projector.screen(p)),
+            paint: Paint::Flat(0),
+        };
+        let mut samples = 0;
+        face.pieces(&self.projector, Cull::None, |setup, _| {
+            setup.fragments(self.projector.image(), |_, _, _| samples += 1);
+        });
+        samples
+    }
 }

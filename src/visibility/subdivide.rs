@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::{Error, Result, num::math};
+use crate::{Error, Result, num::math, raster::Scene};
 
 /// Most pieces that are measured: about 4 GiB of buffers on two threads.
 pub(super) const PIECE_LIMIT: usize = 1 << 25;
@@ -17,12 +17,12 @@ pub(super) const PIECE_LIMIT: usize = 1 << 25;
 /// Triangles to measure, in the order of the faces they are part of.
 #[derive(Clone, Debug)]
 pub(super) struct Pieces {
-    /// Positions in frame units; those of the mesh come first.
-    pub(super) positions: Vec<DVec3>,
-    /// The pieces.
-    pub(super) triangles: Vec<[u32; 3]>,
+    /// The pieces with ids from 0; the positions of the mesh come first.
+    pub(super) scene: Scene,
     /// First piece of every face, and the number of pieces; empty where every face is its own piece.
     starts: Vec<u32>,
+    /// Area of every piece; empty where every face is its own piece.
+    areas: Vec<f64>,
 }
 
 impl Pieces {
@@ -32,15 +32,34 @@ impl Pieces {
         triangles: &[[u32; 3]],
         limit: Option<f64>,
     ) -> Result<Self> {
-        let mut pieces = Self {
+        let mut division = Division {
             positions,
             triangles: triangles.to_vec(),
             starts: Vec::new(),
         };
         if let Some(limit) = limit {
-            while pieces.split(limit * limit)? {}
+            while division.split(limit * limit)? {}
         }
-        Ok(pieces)
+        let Division {
+            positions,
+            triangles,
+            starts,
+        } = division;
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| positions[v as usize]);
+            0.5 * math::length((b - a).cross(c - a))
+        };
+        let areas = if starts.is_empty() {
+            Vec::new()
+        } else {
+            triangles.iter().map(area).collect()
+        };
+        let ids = (0..triangles.len() as u32).collect();
+        Ok(Self {
+            scene: Scene::new(positions, triangles, ids),
+            starts,
+            areas,
+        })
     }
 
     /// The pieces of a face.
@@ -58,12 +77,21 @@ impl Pieces {
         self.starts.is_empty()
     }
 
-    /// The area of a piece.
+    /// The area of a piece; only where faces are in pieces.
+    #[inline]
     pub(super) fn area(&self, piece: usize) -> f64 {
-        let [a, b, c] = self.triangles[piece].map(|v| self.positions[v as usize]);
-        0.5 * math::length((b - a).cross(c - a))
+        self.areas[piece]
     }
+}
 
+/// Triangles while they are divided.
+struct Division {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    starts: Vec<u32>,
+}
+
+impl Division {
     /// Splits every edge whose squared length exceeds `limit` once; false where there is none.
     fn split(&mut self, limit: f64) -> Result<bool> {
         let long = |positions: &[DVec3], a: u32, b: u32| {
@@ -88,8 +116,12 @@ impl Pieces {
         let mut starts = Vec::with_capacity(faces + 1);
         for face in 0..faces {
             starts.push(finer.len() as u32);
-            for piece in self.of(face) {
-                let corners = self.triangles[piece];
+            let range = if self.starts.is_empty() {
+                face..face + 1
+            } else {
+                self.starts[face] as usize..self.starts[face + 1] as usize
+            };
+            for &corners in &self.triangles[range] {
                 let positions = &mut self.positions;
                 let mut middle = |a: u32, b: u32| {
                     if !long(positions, a, b) {

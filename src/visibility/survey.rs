@@ -69,7 +69,7 @@ impl Survey {
     /// True where every view was counted.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.ranges == [0..self.options.cameras()]
+        matches!(self.ranges.as_slice(), [all] if *all == (0..self.options.cameras()))
     }
 
     /// Adds the views of another survey.
