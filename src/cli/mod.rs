@@ -12,7 +12,9 @@ mod check;
 mod compare;
 mod demo;
 mod golden;
+mod guidance;
 mod inspect;
+mod levels;
 mod render;
 mod replay;
 mod selfcheck;
@@ -70,6 +72,7 @@ enum Command {
     Compare(compare::Options),
     Check(check::Options),
     Inspect(inspect::Options),
+    Levels(levels::Options),
     Golden(golden::Options),
     Selfcheck(selfcheck::Options),
     Demo(demo::Options),
@@ -144,6 +147,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Levels(options) => levels::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
         Command::Demo(options) => demo::run(&options, common, &terminal),
         Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),

@@ -1,7 +1,7 @@
 //! The methods of simplification, their options and their outcome.
 //!
 //! [`simplify`] takes a mesh and [`Options`] and gives an [`Outcome`]: the mesh, the history of its making and why it
-//! ended. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
+//! ended; [`simplify_guided`] does so by a visibility that was measured before. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
 //! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
 pub mod image;
@@ -16,4 +16,4 @@ pub mod visibility;
 pub use crate::collapse::{History, Replay};
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
-pub use run::simplify;
+pub use run::{simplify, simplify_guided};

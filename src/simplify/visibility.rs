@@ -14,6 +14,7 @@ use super::quadric::{QuadricMethod, QuadricOptions};
 use crate::{
     Error, Result,
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    visibility,
 };
 
 /// How much `Q` counts beside `Q_v`: enough to order what nobody sees, and no more than a visibility of 0.001.
@@ -27,6 +28,8 @@ pub struct VisibilityOptions {
     pub quadric: QuadricOptions,
     /// How much the cost without visibility counts beside the cost with it; at least 0.
     pub tie_weight: f64,
+    /// How the visibility of the input's triangles is measured, or was.
+    pub measure: visibility::Options,
 }
 
 impl Default for VisibilityOptions {
@@ -34,6 +37,7 @@ impl Default for VisibilityOptions {
         Self {
             quadric: QuadricOptions::default(),
             tie_weight: TIE_WEIGHT,
+            measure: visibility::Options::default(),
         }
     }
 }

@@ -2,14 +2,17 @@
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
+    Error, Silent,
     collapse::{Engine, LiveMesh, Method, Ring, Rules, Schedule, Site, Target},
     mesh::{Mesh, canonical, generate},
     simplify::{
+        Amount, MethodOptions, Options, Replay,
         quadric::{QuadricMethod, QuadricOptions, Weighting},
+        simplify, simplify_guided,
         visibility::{VisibilityMethod, VisibilityOptions},
     },
     view::frame_of,
+    visibility::{self, measure},
 };
 use proptest::prelude::*;
 
@@ -70,6 +73,7 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
             uncertainty: None,
         },
         tie_weight: 0.0,
+        ..VisibilityOptions::default()
     };
     let (e_q, e_v) = (0.054_011_934_252_198_86, 0.009_573_026_642_192_707);
     for (tie_weight, cost) in [(0.0, e_v), (1e-6, e_v + 1e-6 * e_q), (1.0, e_v + e_q)] {
@@ -153,6 +157,117 @@ fn what_nobody_sees_goes_first_and_the_rest_keeps_its_shape() {
         guided_error < 0.7 * plain_error,
         "{guided_error} {plain_error}"
     );
+}
+
+/// Down to so many triangles, by six cameras.
+fn options(triangles: u64) -> Options {
+    let mut options = Options::visibility(Amount::Triangles(triangles));
+    options.method = MethodOptions::Visibility(VisibilityOptions {
+        measure: visibility::Options {
+            octahedron: 0,
+            size: 48,
+            ..visibility::Options::default()
+        },
+        ..VisibilityOptions::default()
+    });
+    options
+}
+
+#[test]
+fn options_out_of_range_are_refused_by_name() {
+    let mesh = generate::icosphere(1);
+    for (wrong, said) in [
+        (
+            VisibilityOptions {
+                tie_weight: -1.0,
+                ..VisibilityOptions::default()
+            },
+            "tie-weight",
+        ),
+        (
+            VisibilityOptions {
+                tie_weight: f64::NAN,
+                ..VisibilityOptions::default()
+            },
+            "tie-weight",
+        ),
+        (
+            VisibilityOptions {
+                measure: visibility::Options {
+                    octahedron: 9,
+                    ..visibility::Options::default()
+                },
+                ..VisibilityOptions::default()
+            },
+            "octahedron",
+        ),
+        (
+            VisibilityOptions {
+                quadric: QuadricOptions {
+                    boundary_weight: -1.0,
+                    ..QuadricOptions::default()
+                },
+                ..VisibilityOptions::default()
+            },
+            "boundary-weight",
+        ),
+    ] {
+        let options = Options {
+            method: MethodOptions::Visibility(wrong),
+            ..options(9)
+        };
+        let error = simplify(&mesh, &options, &Silent).expect_err("out of range");
+        assert!(matches!(error, Error::Usage(_)), "{error}");
+        assert!(error.to_string().contains(said), "{error}");
+    }
+}
+
+#[test]
+fn a_visibility_measured_before_guides_as_one_measured_now() {
+    let mesh = canonical(&generate::shells(2, 1)).mesh;
+    let options = options(60);
+    let MethodOptions::Visibility(own) = &options.method else {
+        panic!("{options:?}");
+    };
+    let direct = simplify(&mesh, &options, &Silent).expect("runs");
+    let before = measure(&mesh, &own.measure, &Silent).expect("measures");
+    // Whatever the options say: what was measured is what counts and what is recorded.
+    let asked = Options::visibility(Amount::Triangles(60));
+    let guided = simplify_guided(&mesh, &asked, &before, &Silent).expect("runs");
+    assert_eq!(guided.mesh, direct.mesh);
+    assert_eq!(guided.options, direct.options);
+    assert_eq!(guided.history, direct.history);
+    assert_eq!(guided.v_mesh, Some(before.mesh()));
+    let text = serde_json::to_string(&guided.options).expect("JSON");
+    assert_eq!(
+        serde_json::from_str::<Options>(&text).expect("read back"),
+        options
+    );
+    let other = simplify_guided(
+        &mesh,
+        &Options::quadric(Amount::Triangles(60)),
+        &before,
+        &Silent,
+    );
+    assert!(matches!(other, Err(Error::Usage(_))));
+    let mesh = generate::icosphere(1);
+    let other = simplify_guided(&mesh, &asked, &before, &Silent);
+    assert!(matches!(other, Err(Error::Usage(_))));
+}
+
+#[test]
+fn every_level_of_a_guided_run_is_the_direct_run_to_it() {
+    for kind in [0, 1, 3, 4] {
+        let mesh = shapes::any(kind, 7);
+        let outcome = simplify(&mesh, &options(4), &Silent).expect("runs");
+        let mut replay = Replay::new(&mesh, &outcome.history).expect("the same mesh");
+        for share in [0.3, 0.8, 0.5] {
+            let triangles = (mesh.triangles().len() as f64 * share) as u64;
+            replay.seek(triangles as usize).expect("fits");
+            let direct = simplify(&mesh, &options(triangles), &Silent).expect("runs");
+            assert_eq!(replay.live().to_mesh(), Ok(direct.mesh), "{kind} {share}");
+        }
+    }
 }
 
 proptest! {
