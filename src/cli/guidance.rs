@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::visibility::parse_cameras;
 use crate::{
     Error, Result, io,
     mesh::Mesh,
@@ -12,11 +13,11 @@ use crate::{
 /// Options of the method `visibility`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct Guidance {
-    /// Visibility method: what `lodmark visibility --partial` has counted for this mesh, instead of measuring again
+    /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, instead of measuring
     #[arg(long, value_name = "FILE")]
     visibility: Option<PathBuf>,
-    /// Visibility method: measure from the corners of an octahedron subdivided K times, 0 to 5 [default: 3]
-    #[arg(long, value_name = "K", conflicts_with = "visibility")]
+    /// Visibility method: measure with 6, 18, 66, 258, 1026 or 4098 cameras [default: 258]
+    #[arg(long, value_name = "N", conflicts_with = "visibility", value_parser = parse_cameras)]
     cameras: Option<u32>,
     /// Visibility method: width and height of the ID buffers [default: 480]
     #[arg(long, value_name = "PIXELS", conflicts_with = "visibility")]

@@ -21,6 +21,7 @@ mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
+mod visibility;
 
 use std::{
     io::Write,
@@ -70,6 +71,8 @@ enum Command {
     Replay(replay::Options),
     Render(render::Options),
     Compare(compare::Options),
+    Visibility(visibility::Options),
+    MergeVisibility(visibility::MergeOptions),
     Check(check::Options),
     Inspect(inspect::Options),
     Levels(levels::Options),
@@ -82,14 +85,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &[
-    "visibility",
-    "merge-visibility",
-    "check-rays",
-    "bound",
-    "verify",
-    "lod",
-];
+const NOT_BUILT: &[&str] = &["check-rays", "bound", "verify", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,6 +141,8 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Replay(options) => replay::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Compare(options) => compare::run(&options, common, &terminal),
+        Command::Visibility(options) => visibility::run(&options, common, &terminal),
+        Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Levels(options) => levels::run(&options, common, &terminal),

@@ -56,12 +56,14 @@ const BATCH_PARTS: usize = 1 << 25;
 /// Views counted between two sums, where memory allows.
 const BATCH_VIEWS: usize = 64;
 
-/// Counts what the cameras of `range` see of `mesh`.
+/// Counts what the cameras of `range` see of `mesh`; `watch` is shown the parts of all faces for some views at a time,
+/// in the order of the views.
 pub(super) fn count(
     mesh: &Mesh,
     options: &Options,
     range: Range<u32>,
     progress: &dyn Progress,
+    mut watch: impl FnMut(&[u16]),
 ) -> Result<Counts> {
     options.check()?;
     let cameras = options.cameras();
@@ -117,6 +119,7 @@ pub(super) fn count(
                 lock().push(sight);
                 Ok(())
             })?;
+        watch(parts);
         counts.add(views_of_batch, parts, &cameras, &normals);
     }
     progress.report("visibility", views.len() as u64, views.len() as u64);

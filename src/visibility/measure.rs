@@ -25,7 +25,7 @@ pub struct Visibility {
 /// [`Error::Usage`] where an option is out of range or the mesh has no triangle, [`Error::Unsupported`] where its
 /// triangles would make too many pieces, [`Error::Interrupted`].
 pub fn measure(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Visibility> {
-    let counts = count(mesh, options, 0..options.cameras(), progress)?;
+    let counts = count(mesh, options, 0..options.cameras(), progress, |_| {})?;
     Visibility::of(mesh, options, counts)
 }
 

@@ -10,15 +10,23 @@
 //! letter. Deviations are told where they are made.
 
 mod cameras;
+mod color;
+mod convergence;
 mod counts;
+mod hidden;
 mod measure;
 mod options;
 mod sight;
 mod subdivide;
 mod survey;
 mod survey_file;
+mod table;
 mod unseen;
 
+pub use color::color;
+pub use convergence::{ConvergenceStep, convergence};
+pub use hidden::remove_hidden;
 pub use measure::{Visibility, measure};
 pub use options::{Alignment, CameraWeights, Options, UnseenRule};
 pub use survey::Survey;
+pub use table::VisibilityTable;

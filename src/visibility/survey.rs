@@ -38,7 +38,18 @@ impl Survey {
         range: Range<u32>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let counts = count(mesh, options, range.clone(), progress)?;
+        Self::watched(mesh, options, range, progress, |_| {})
+    }
+
+    /// As [`Survey::of_views`]; `watch` is shown what [`count`] shows.
+    pub(super) fn watched(
+        mesh: &Mesh,
+        options: &Options,
+        range: Range<u32>,
+        progress: &dyn Progress,
+        watch: impl FnMut(&[u16]),
+    ) -> Result<Self> {
+        let counts = count(mesh, options, range.clone(), progress, watch)?;
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").into(),
             digest: content_digest(mesh),

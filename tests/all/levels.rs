@@ -15,7 +15,7 @@ const SMALL: [&str; 8] = [
     "--distance-samples",
     "2000",
     "--cameras",
-    "0",
+    "6",
     "--visibility-size",
     "64",
 ];
@@ -67,7 +67,7 @@ fn every_level_is_the_run_to_it_and_is_judged_as_compare_does() {
     for level in levels {
         let method = level["method"].as_str().expect("a name");
         let target = level["target"].to_string();
-        let guided = ["--cameras", "0", "--visibility-size", "64"];
+        let guided = ["--cameras", "6", "--visibility-size", "64"];
         let mut words = vec![
             "simplify", "in.ply", "one.ply", "-t", &target, "--method", method,
         ];
@@ -175,8 +175,8 @@ fn levels_without_sense_are_refused_before_anything_is_made() {
         (&["--levels", "half"], "50,25"),
         (&["--methods", "quadric,quadric"], "twice"),
         (&["--methods", "guess"], "quadric"),
-        (&["--methods", "quadric", "--cameras", "2"], "--cameras"),
-        (&["--cameras", "9"], "octahedron"),
+        (&["--methods", "quadric", "--cameras", "18"], "--cameras"),
+        (&["--cameras", "9"], "258"),
         (&["--size", "0"], "0"),
         (&["--samples", "3"], "samples"),
     ] {
