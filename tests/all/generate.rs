@@ -171,7 +171,7 @@ fn the_parts_of_the_motor_are_closed_and_all_but_three_cavities_face_outward() {
         let mesh = generate::motor(detail);
         assert!(closed(&mesh), "detail {detail}");
         let parts = parts(&mesh);
-        assert_eq!(parts.len(), 148);
+        assert_eq!(parts.len(), 169);
         let inward: Vec<usize> = (0..parts.len())
             .filter(|&k| part_volume(&mesh, &parts[k]) < 0.0)
             .collect();

@@ -17,6 +17,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
+    cli::{expect, folder, put},
     memoryless::{interior, ring},
     shapes::{self, Random},
 };
@@ -334,4 +335,70 @@ proptest! {
             prop_assert_eq!(&run(threads), &one);
         }
     }
+}
+
+#[test]
+fn the_command_takes_the_visibility_from_a_file_and_refuses_that_of_another_mesh() {
+    let dir = folder();
+    put(&dir, "in.ply", &generate::shells(2, 2));
+    put(&dir, "other.ply", &generate::shells(2, 1));
+    let measure = ["--cameras", "18", "--size", "64", "--partial", "counts.bin"];
+    expect(&dir, 0, &[&["visibility", "in.ply"][..], &measure].concat());
+    let simplify = |input: &str, more: &[&str], exit: i32| {
+        let words = [
+            &[
+                "simplify",
+                input,
+                "out.ply",
+                "-t",
+                "330",
+                "--method",
+                "visibility",
+            ][..],
+            &["--json", "report.json", "--history", "history.bin"],
+            more,
+        ];
+        expect(&dir, exit, &words.concat())
+    };
+    let files = || {
+        ["out.ply", "report.json", "history.bin"]
+            .map(|name| std::fs::read(dir.path().join(name)).expect("written"))
+    };
+    simplify("in.ply", &["--visibility", "counts.bin"], 0);
+    let from_file = files();
+    simplify("in.ply", &["--cameras", "18", "--visibility-size", "64"], 0);
+    assert_eq!(
+        files(),
+        from_file,
+        "measured before or now, not a byte differs"
+    );
+    let report: serde_json::Value = serde_json::from_slice(&from_file[1]).expect("JSON");
+    assert_eq!(report["options"]["method"]["measure"]["octahedron"], 1);
+    assert!(
+        report["v_mesh"]
+            .as_f64()
+            .is_some_and(|v| v > 0.5 && v < 0.95)
+    );
+    let said = simplify("other.ply", &["--visibility", "counts.bin"], 3);
+    assert!(
+        said.contains("counts.bin") && said.contains("another mesh"),
+        "{said}"
+    );
+    std::fs::write(dir.path().join("counts.bin"), b"LODMVISI").expect("writes");
+    let said = simplify("in.ply", &["--visibility", "counts.bin"], 3);
+    assert!(said.contains("counts.bin"), "{said}");
+    let both = ["--visibility", "counts.bin", "--cameras", "6"];
+    simplify("in.ply", &both, 2);
+    let words = [
+        "simplify",
+        "in.ply",
+        "out.ply",
+        "-t",
+        "9",
+        "--method",
+        "quadric",
+        "--cameras",
+        "6",
+    ];
+    assert!(expect(&dir, 2, &words).contains("--cameras"));
 }

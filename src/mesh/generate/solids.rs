@@ -10,10 +10,10 @@ use super::{Surface, torus::swept};
 use crate::num::math;
 
 /// A body turned around the z axis: `rows` are radius and height from bottom to top, both ends on the axis (whatever
-/// their radius says), each of the others has `around` vertices. `shape` gives the factor of a radius at an angle and
+/// their radius says), each of the others has `around` vertices; a flat
+/// and round end has no vertex in its middle. `shape` gives the factor of a radius at an angle and
 /// height: 1 for a round body.
 pub(super) fn turned(rows: &[(f64, f64)], around: u32, shape: impl Fn(f64, f64) -> f64) -> Surface {
-    let pole = |row: Option<&(f64, f64)>| DVec3::new(0.0, 0.0, row.map_or(0.0, |r| r.1));
     let around = around.max(3);
     let ring = |&(radius, z): &(f64, f64)| -> Vec<DVec3> {
         let place = |k| {
@@ -25,7 +25,17 @@ pub(super) fn turned(rows: &[(f64, f64)], around: u32, shape: impl Fn(f64, f64) 
     };
     let inner = rows.get(1..rows.len().saturating_sub(1)).unwrap_or(&[]);
     let rings: Vec<Vec<DVec3>> = inner.iter().map(ring).collect();
-    capped(&rings, pole(rows.first()), pole(rows.last()))
+    let pole = |end: usize, next: usize| {
+        let ((_, z), (_, beside)) = (rows.get(end)?, rows.get(next)?);
+        let cone = z < beside || z > beside;
+        let round = (0..around).all(|k| {
+            let theta = TAU * (f64::from(k) / f64::from(around));
+            (shape(theta, *beside) - shape(0.0, *beside)).abs() < 1e-9
+        });
+        (cone || !round).then_some(DVec3::Z * *z)
+    };
+    let last = rows.len().saturating_sub(1);
+    capped(&rings, pole(0, 1), pole(last, last.saturating_sub(1)))
 }
 
 /// A round wire of `radius` along `path`, with `across` vertices around it and flat ends.
@@ -50,8 +60,7 @@ pub(super) fn wire(path: &[DVec3], radius: f64, across: u32) -> Surface {
         };
         rings.push((0..across).map(place).collect::<Vec<_>>());
     }
-    let end = |p: Option<&DVec3>| p.copied().unwrap_or_default();
-    capped(&rings, end(path.first()), end(path.last()))
+    capped(&rings, None, None)
 }
 
 /// A tube around the z axis with walls between two radii and two heights.
@@ -65,10 +74,10 @@ pub(super) fn hollow(radii: [f64; 2], heights: [f64; 2], around: u32) -> Surface
     })
 }
 
-/// The box with the given half sides around the origin: edges rounded with `radius` in twice `steps` steps, the flat part
-/// of each side a grid of `cells` (along x, y, z).
-pub(super) fn round_box(half: DVec3, radius: f64, cells: [u32; 3], steps: u32) -> Surface {
-    let lines = [0, 1, 2].map(|axis| lines(half[axis], radius, cells[axis].max(1), steps.max(1)));
+/// The box with the given half sides around the origin: edges rounded with `radius` in twice `steps` steps, two
+/// triangles in the flat part of each side.
+pub(super) fn round_box(half: DVec3, radius: f64, steps: u32) -> Surface {
+    let lines = [0, 1, 2].map(|axis| lines(half[axis], radius, steps.max(1)));
     let n = lines.each_ref().map(|l| l.len() as u32 - 1);
     let mut surface = Surface::default();
     let mut numbers: BTreeMap<[u32; 3], u32> = BTreeMap::new();
@@ -116,15 +125,15 @@ pub(super) fn cavity(mut surface: Surface) -> Surface {
     surface
 }
 
-/// Where the grid of a box meets an axis: equal angles around the rounded edges, equal lengths between them.
-fn lines(half: f64, radius: f64, cells: u32, steps: u32) -> Vec<f64> {
+/// Where the grid of a box meets an axis: equal angles around the rounded edges.
+fn lines(half: f64, radius: f64, steps: u32) -> Vec<f64> {
     let flat = half - radius;
     let bent = |k: u32| {
         let angle = TAU / 8.0 * (f64::from(k) / f64::from(steps));
         flat + radius * (math::sin(angle) / math::cos(angle))
     };
     let mut lines: Vec<f64> = (1..=steps).rev().map(|k| -bent(k)).collect();
-    lines.extend((0..=cells).map(|k| flat * (2.0 * (f64::from(k) / f64::from(cells)) - 1.0)));
+    lines.extend([-flat, flat]);
     lines.extend((1..=steps).map(bent));
     lines
 }
@@ -143,24 +152,37 @@ pub(super) fn refined(profile: &[(f64, f64)], steps: u32) -> Vec<(f64, f64)> {
     rows
 }
 
-/// Rings of equally many vertices, joined to one another and to a point at either end.
-fn capped(rings: &[Vec<DVec3>], start: DVec3, end: DVec3) -> Surface {
+/// Rings of equally many vertices, joined to one another and closed at either end: towards a point, or flat.
+fn capped(rings: &[Vec<DVec3>], start: Option<DVec3>, end: Option<DVec3>) -> Surface {
     let around = rings.first().map_or(0, Vec::len) as u32;
-    let last = rings.len() as u32 * around + 1;
     let mut surface = Surface::default();
-    surface.positions.push(start);
     surface.positions.extend(rings.iter().flatten());
-    surface.positions.push(end);
-    for k in 0..around {
-        let next = (k + 1) % around;
-        surface.triangles.push([0, 1 + next, 1 + k]);
-        for row in 1..rings.len() as u32 {
-            let (low, high) = (1 + (row - 1) * around, 1 + row * around);
+    for row in 1..rings.len() as u32 {
+        let (low, high) = ((row - 1) * around, row * around);
+        for k in 0..around {
+            let next = (k + 1) % around;
             let [a, b, c, d] = [low + k, low + next, high + next, high + k];
             surface.triangles.extend([[a, b, c], [a, c, d]]);
         }
-        let top = last - around;
-        surface.triangles.push([last, top + k, top + next]);
+    }
+    let top = (rings.len() as u32).saturating_sub(1) * around;
+    for (first, pole, up) in [(0, start, false), (top, end, true)] {
+        let middle = surface.positions.len() as u32;
+        surface.positions.extend(pole);
+        let sides = match pole {
+            Some(_) => 0..around,
+            None => 1..around.saturating_sub(1),
+        };
+        for k in sides {
+            let center = if pole.is_some() { middle } else { first };
+            let (k, next) = (first + k, first + (k + 1) % around);
+            let face = if up {
+                [center, k, next]
+            } else {
+                [center, next, k]
+            };
+            surface.triangles.push(face);
+        }
     }
     surface
 }
