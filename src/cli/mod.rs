@@ -12,13 +12,16 @@ mod check;
 mod compare;
 mod demo;
 mod golden;
+mod guidance;
 mod inspect;
+mod levels;
 mod render;
 mod replay;
 mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
+mod visibility;
 
 use std::{
     io::Write,
@@ -68,8 +71,11 @@ enum Command {
     Replay(replay::Options),
     Render(render::Options),
     Compare(compare::Options),
+    Visibility(visibility::Options),
+    MergeVisibility(visibility::MergeOptions),
     Check(check::Options),
     Inspect(inspect::Options),
+    Levels(levels::Options),
     Golden(golden::Options),
     Selfcheck(selfcheck::Options),
     Demo(demo::Options),
@@ -79,14 +85,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &[
-    "visibility",
-    "merge-visibility",
-    "check-rays",
-    "bound",
-    "verify",
-    "lod",
-];
+const NOT_BUILT: &[&str] = &["check-rays", "bound", "verify", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,8 +141,11 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Replay(options) => replay::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Compare(options) => compare::run(&options, common, &terminal),
+        Command::Visibility(options) => visibility::run(&options, common, &terminal),
+        Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Levels(options) => levels::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
         Command::Demo(options) => demo::run(&options, common, &terminal),
         Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),

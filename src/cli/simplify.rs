@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf};
 use clap::{ArgGroup, ValueEnum};
 use serde::Serialize;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, guidance::Guidance, report, source, terminal::Terminal};
 use crate::{
     Error, Result,
     collapse::{Schedule, Topology},
@@ -16,7 +16,8 @@ use crate::{
         image::{EngineName, ImageOptions, Preset, Start},
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
-        simplify,
+        simplify, simplify_guided,
+        visibility::VisibilityOptions,
     },
     view::{Interpolation, ViewsName},
 };
@@ -73,9 +74,11 @@ pub(super) struct Options {
     /// Whether holes may close and parts may merge
     #[arg(long, value_enum, default_value_t = TopologyName::Preserve)]
     topology: TopologyName,
-    /// Quadric method: planes with uncertainty (Trettner & Kobbelt 2020)
+    /// Quadric and visibility methods: planes with uncertainty (Trettner & Kobbelt 2020)
     #[arg(long)]
     probabilistic: bool,
+    #[command(flatten)]
+    guidance: Guidance,
     /// Write the history of collapses, for `lodmark replay`
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -96,8 +99,7 @@ enum Method {
     Memoryless,
     /// By distances to planes (Garland & Heckbert 1997/98)
     Quadric,
-    /// By visibility (not built yet)
-    #[value(hide = true)]
+    /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002)
     Visibility,
     /// Within a tolerance volume (not built yet)
     #[value(hide = true)]
@@ -177,6 +179,8 @@ struct Summary<'a> {
     method: &'static str,
     stop: &'a Stop,
     error_rms: Option<f64>,
+    /// V(M) of the input; only for the method that is guided by it.
+    v_mesh: Option<f64>,
     phases: &'a [crate::simplify::Phase],
     content_sha256: String,
 }
@@ -203,14 +207,14 @@ impl Options {
         let method = match self.method {
             Method::Image => MethodOptions::Image(self.image(preset)),
             Method::Memoryless => MethodOptions::Memoryless(MemorylessOptions::default()),
-            Method::Quadric => MethodOptions::Quadric(if self.probabilistic {
-                QuadricOptions::probabilistic()
-            } else {
-                QuadricOptions::default()
+            Method::Quadric => MethodOptions::Quadric(self.quadric()),
+            Method::Visibility => MethodOptions::Visibility(VisibilityOptions {
+                quadric: self.quadric(),
+                ..self.guidance.options()
             }),
-            Method::Visibility | Method::Tolerance | Method::ViewBounded => {
+            Method::Tolerance | Method::ViewBounded => {
                 return Err(Error::Unsupported(format!(
-                    "the method `{}` is not built yet; use image, memoryless or quadric",
+                    "the method `{}` is not built yet; use image, memoryless, quadric or visibility",
                     self.method
                         .to_possible_value()
                         .map_or_else(String::new, |v| v.get_name().to_string())
@@ -222,6 +226,7 @@ impl Options {
             MethodOptions::Image(_) => RunOptions::image(target),
             MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
             MethodOptions::Quadric(_) => RunOptions::quadric(target),
+            MethodOptions::Visibility(_) => RunOptions::visibility(target),
         };
         options.method = method;
         options.error_rms = self.error_rms;
@@ -239,6 +244,14 @@ impl Options {
         };
         options.check()?;
         Ok(options)
+    }
+
+    fn quadric(&self) -> QuadricOptions {
+        if self.probabilistic {
+            QuadricOptions::probabilistic()
+        } else {
+            QuadricOptions::default()
+        }
     }
 
     fn image(&self, preset: Preset) -> ImageOptions {
@@ -276,10 +289,12 @@ impl Options {
             ("--engine", self.engine.is_some()),
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
+        let guidance = self.guidance.given();
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &quadric,
-            MethodOptions::Memoryless(_) => &[image.as_slice(), quadric.as_slice()].concat(),
-            MethodOptions::Quadric(_) => &image,
+            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance].concat(),
+            MethodOptions::Memoryless(_) => &[image.as_slice(), &quadric, &guidance].concat(),
+            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance].concat(),
+            MethodOptions::Visibility(_) => &image,
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(Error::Usage(format!(
@@ -327,7 +342,10 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
             canonical.degenerate
         ));
     }
-    let outcome = simplify(&canonical.mesh, &resolved, terminal)?;
+    let outcome = match options.guidance.read(&canonical.mesh)? {
+        Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
+        None => simplify(&canonical.mesh, &resolved, terminal)?,
+    };
     tell(options, triangles_in, &outcome, terminal);
     if options.strict && !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput) {
         return Err(Error::TargetNotReached(format!(
@@ -351,6 +369,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         method: outcome.options.method.name(),
         stop: &outcome.stop,
         error_rms: outcome.error_rms,
+        v_mesh: outcome.v_mesh,
         phases: &outcome.phases,
         content_sha256: content_sha256(&outcome.mesh),
     };
@@ -387,6 +406,9 @@ fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Te
                 c.ranks.len()
             ));
         }
+    }
+    if let Some(v) = outcome.v_mesh {
+        terminal.say(&format!("visibility of the input: {v:.4}"));
     }
     if let Some(rms) = outcome.error_rms {
         terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));

@@ -14,7 +14,7 @@ use super::luma::{SquaredError, ViewErrors, squared_error};
 use crate::{
     Error, Progress, Result,
     raster::{Plane, Scene, luma_sums, mean_luma},
-    view::{Interpolation, View, ViewSet},
+    view::{Interpolation, Projection, Sphere, View, ViewSet, directions::dodecahedron},
 };
 
 /// Bytes of pictures in the making at a time; one view at least.
@@ -76,19 +76,63 @@ pub fn appearance(
     views: &ViewSet,
     progress: &dyn Progress,
 ) -> Result<Vec<Appearance>> {
+    let shadings = [Interpolation::Flat, Interpolation::Gouraud];
+    let found = errors(reference, candidates, views, shadings, progress)?;
+    let both = |errors: Vec<ViewErrors>| match <[ViewErrors; 2]>::try_from(errors) {
+        Ok([flat, gouraud]) => Ok(Appearance { flat, gouraud }),
+        Err(_) => Err(Error::Internal("two shadings, two errors".into())),
+    };
+    found.into_iter().map(both).collect()
+}
+
+/// As [`appearance`], flat only. In the 20 views of [`image_error_views`] the total is the error of Zhang & Turk 2002,
+/// equation 5.11: [`SquaredError::root`].
+///
+/// # Errors
+/// As [`appearance`].
+pub fn flat(
+    reference: &Scene,
+    candidates: &[Scene],
+    views: &ViewSet,
+    progress: &dyn Progress,
+) -> Result<Vec<ViewErrors>> {
+    let shading = [Interpolation::Flat];
+    let found = errors(reference, candidates, views, shading, progress)?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// The views of equation 5.11: from the 20 corners of a dodecahedron, in images of `size` x `size` pixels with
+/// `samples` x `samples` samples each (the paper does not say how many).
+///
+/// # Errors
+/// As [`ViewSet::around`] and [`ViewSet::with_samples`].
+pub fn image_error_views(sphere: &Sphere, size: u32, samples: u32) -> Result<ViewSet> {
+    ViewSet::around(sphere, &dodecahedron(), size, size, Projection::Perspective)?
+        .with_samples(samples)
+}
+
+/// Draws and compares; for each candidate the errors in every shading, in order.
+fn errors<const N: usize>(
+    reference: &Scene,
+    candidates: &[Scene],
+    views: &ViewSet,
+    shadings: [Interpolation; N],
+    progress: &dyn Progress,
+) -> Result<Vec<Vec<ViewErrors>>> {
     for scene in std::iter::once(reference).chain(candidates) {
         require_finite(scene)?;
     }
-    let compare = |view: &View| -> Result<Vec<[SquaredError; 2]>> {
-        let shaded = [Interpolation::Flat, Interpolation::Gouraud].map(|i| with(view, i));
+    let compare = |view: &View| -> Result<Vec<Vec<SquaredError>>> {
+        let shaded = shadings.map(|i| with(view, i));
         let expected = shaded.map(|view| luma_sums(reference, &view, views));
         let samples = views.samples * views.samples;
-        let errors = |scene| -> Result<[SquaredError; 2]> {
-            let error = |i: usize| {
-                let actual = luma_sums(scene, &shaded[i], views);
-                squared_error(&expected[i], &actual, samples)
+        let errors = |scene| -> Result<Vec<SquaredError>> {
+            let pairs = shaded.iter().zip(&expected);
+            let error = |(view, expected)| {
+                let actual = luma_sums(scene, view, views);
+                squared_error(expected, &actual, samples)
             };
-            Ok([error(0)?, error(1)?])
+            pairs.map(error).collect()
         };
         candidates.iter().map(errors).collect()
     };
@@ -106,12 +150,7 @@ pub fn appearance(
         ViewErrors::new(found.iter().map(|view| view[candidate][shading]).collect())
     };
     (0..candidates.len())
-        .map(|candidate| {
-            Ok(Appearance {
-                flat: errors(candidate, 0)?,
-                gouraud: errors(candidate, 1)?,
-            })
-        })
+        .map(|candidate| (0..N).map(|shading| errors(candidate, shading)).collect())
         .collect()
 }
 

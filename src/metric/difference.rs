@@ -210,18 +210,7 @@ pub fn signed_picture<P: Levels>(
     scale: u8,
 ) -> Result<Plane<P>> {
     let (width, height) = (expected.width(), expected.height());
-    if (width, height) != (actual.width(), actual.height()) {
-        return Err(Error::Usage(format!(
-            "no difference picture of images of {width} x {height} and {} x {} pixels; expected the same size",
-            actual.width(),
-            actual.height()
-        )));
-    }
-    if scale == 0 {
-        return Err(Error::Usage(
-            "a difference picture with scale 0 shows nothing; expected 1 to 255".into(),
-        ));
-    }
+    require_same_size(expected, actual, scale)?;
     let level = |e: u8, a: u8| {
         let shown = 128 + i32::from(scale) * (i32::from(a) - i32::from(e));
         shown.clamp(0, 255) as u8
@@ -234,4 +223,40 @@ pub fn signed_picture<P: Levels>(
         .collect();
     Plane::new(width, height, pixels)
         .ok_or_else(|| Error::Internal("a difference picture changed its size".into()))
+}
+
+/// `expected` in grey, blended towards pure red by `scale * |actual - expected|` of 255 (clamped): differences in the
+/// red channel as in Figure 8 of Zhang & Turk 2002, here on top of the picture they belong to. Where nothing differs it
+/// is grey, and the reddest pixels differ most.
+///
+/// # Errors
+/// [`Error::Usage`] where the sizes differ or `scale` is 0.
+pub fn red_picture(expected: &Plane<u8>, actual: &Plane<u8>, scale: u8) -> Result<Plane<[u8; 3]>> {
+    require_same_size(expected, actual, scale)?;
+    let pixel = |(&e, &a): (&u8, &u8)| {
+        let red = (u32::from(scale) * u32::from(e.abs_diff(a))).min(255);
+        let rest = (u32::from(e) * (255 - red) + 127) / 255;
+        // Both at most 255: a mean of the level and 255, and a share of the level.
+        [(rest + red) as u8, rest as u8, rest as u8]
+    };
+    let pixels = expected.values().iter().zip(actual.values()).map(pixel);
+    Plane::new(expected.width(), expected.height(), pixels.collect())
+        .ok_or_else(|| Error::Internal("a difference picture changed its size".into()))
+}
+
+fn require_same_size<P: Copy>(expected: &Plane<P>, actual: &Plane<P>, scale: u8) -> Result<()> {
+    let (width, height) = (expected.width(), expected.height());
+    if (width, height) != (actual.width(), actual.height()) {
+        return Err(Error::Usage(format!(
+            "no difference picture of images of {width} x {height} and {} x {} pixels; expected the same size",
+            actual.width(),
+            actual.height()
+        )));
+    }
+    if scale == 0 {
+        return Err(Error::Usage(
+            "a difference picture with scale 0 shows nothing; expected 1 to 255".into(),
+        ));
+    }
+    Ok(())
 }

@@ -70,6 +70,13 @@ impl SquaredError {
         sqrt(self.mean_square())
     }
 
+    /// Root of the sum of squared differences in levels, not divided by the number of pixels: equation 5.11 of Zhang &
+    /// Turk 2002. Comparable only between images of one size.
+    #[must_use]
+    pub fn root(self) -> f64 {
+        sqrt(self.sum as f64) / f64::from(self.samples.max(1))
+    }
+
     /// Peak signal-to-noise ratio in decibels for the peak 255; `None` (JSON: `null`) where no pixel differs, which
     /// is an infinite ratio.
     #[must_use]

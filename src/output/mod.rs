@@ -10,3 +10,4 @@ pub mod npy;
 pub mod png;
 pub mod report;
 pub mod sheet;
+pub mod visibility_ply;

@@ -1,8 +1,8 @@
 //! The methods of simplification, their options and their outcome.
 //!
 //! [`simplify`] takes a mesh and [`Options`] and gives an [`Outcome`]: the mesh, the history of its making and why it
-//! ended. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
-//! methods use as well.
+//! ended; [`simplify_guided`] does so by a visibility that was measured before. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
+//! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
 pub mod image;
 pub mod memoryless;
@@ -10,9 +10,10 @@ mod options;
 mod outcome;
 pub mod quadric;
 mod run;
+pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
 pub use crate::collapse::{History, Replay};
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
-pub use run::simplify;
+pub use run::{simplify, simplify_guided};

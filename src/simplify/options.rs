@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions};
+use super::{
+    image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions,
+    visibility::VisibilityOptions,
+};
 use crate::{
     Error, Result,
     collapse::{Rules, Schedule},
@@ -53,6 +56,8 @@ pub enum MethodOptions {
     Memoryless(MemorylessOptions),
     /// Garland & Heckbert 1997/98.
     Quadric(QuadricOptions),
+    /// Zhang & Turk 2002.
+    Visibility(VisibilityOptions),
 }
 
 impl MethodOptions {
@@ -63,6 +68,7 @@ impl MethodOptions {
             Self::Image(_) => "image",
             Self::Memoryless(_) => "memoryless",
             Self::Quadric(_) => "quadric",
+            Self::Visibility(_) => "visibility",
         }
     }
 }
@@ -121,6 +127,15 @@ impl Options {
         Self::new(MethodOptions::Quadric(QuadricOptions::default()), target)
     }
 
+    /// Visibility-guided simplification with its defaults, down to `target`.
+    #[must_use]
+    pub fn visibility(target: Amount) -> Self {
+        Self::new(
+            MethodOptions::Visibility(VisibilityOptions::default()),
+            target,
+        )
+    }
+
     fn new(method: MethodOptions, target: Amount) -> Self {
         Self {
             method,
@@ -146,6 +161,16 @@ impl Options {
                 )))
             }
         };
+        let check_quadric = |q: &QuadricOptions| {
+            within("boundary-weight", q.boundary_weight, 0.0, 1e12)?;
+            match q.uncertainty {
+                Some(u) => {
+                    within("normal uncertainty", u.normal, 0.0, 1.0)?;
+                    within("position uncertainty", u.position, 0.0, 1e6)
+                }
+                None => Ok(()),
+            }
+        };
         self.target.triangles(1)?;
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         match (self.error_rms, &self.method) {
@@ -166,15 +191,11 @@ impl Options {
         match &self.method {
             MethodOptions::Image(image) => image.check(),
             MethodOptions::Memoryless(m) => within("volume-weight", m.volume_weight, 0.0, 1.0),
-            MethodOptions::Quadric(q) => {
-                within("boundary-weight", q.boundary_weight, 0.0, 1e12)?;
-                match q.uncertainty {
-                    Some(u) => {
-                        within("normal uncertainty", u.normal, 0.0, 1.0)?;
-                        within("position uncertainty", u.position, 0.0, 1e6)
-                    }
-                    None => Ok(()),
-                }
+            MethodOptions::Quadric(q) => check_quadric(q),
+            MethodOptions::Visibility(v) => {
+                within("tie-weight", v.tie_weight, 0.0, 1.0)?;
+                v.measure.check()?;
+                check_quadric(&v.quadric)
             }
         }
     }

@@ -51,6 +51,8 @@ pub struct Outcome {
     pub phases: Vec<Phase>,
     /// The options as they were used: nothing in them is left to a default.
     pub options: Options,
+    /// V(M), the visibility of the input in [0, 1]; only for the method that is guided by it.
+    pub v_mesh: Option<f64>,
     /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at
     /// images. Never a measure of quality: the run has minimised it.
     pub error_rms: Option<f64>,

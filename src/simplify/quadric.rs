@@ -211,6 +211,16 @@ impl QuadricMethod {
     /// The quadrics of a mesh: the planes of its faces, and planes that stand on its boundary edges. O(n).
     #[must_use]
     pub fn new(live: &LiveMesh, options: &QuadricOptions) -> Self {
+        Self::weighted(live, options, |_| 1.0)
+    }
+
+    /// As [`QuadricMethod::new`], with the planes of a face and of its boundary edges times `factor` of the face's id.
+    #[must_use]
+    pub fn weighted(
+        live: &LiveMesh,
+        options: &QuadricOptions,
+        factor: impl Fn(u32) -> f64,
+    ) -> Self {
         let mut quadrics = vec![Quadric::default(); live.vertex_ids() as usize];
         let deviation = options.uncertainty.unwrap_or(Uncertainty {
             normal: 0.0,
@@ -231,7 +241,9 @@ impl QuadricMethod {
                 Weighting::Unit => 1.0,
                 Weighting::Area => math::length(n) * 0.5,
             };
-            let q = Quadric::uncertain_plane(points[0], unit, weight, deviation.normal, position);
+            let factor = factor(t);
+            let q = Quadric::uncertain_plane(points[0], unit, weight, deviation.normal, position)
+                .scaled(factor);
             for v in corners {
                 quadrics[v as usize] = quadrics[v as usize].plus(&q);
             }
@@ -251,7 +263,7 @@ impl QuadricMethod {
                     Weighting::Unit => options.boundary_weight,
                     Weighting::Area => options.boundary_weight * along.dot(along),
                 };
-                let wall = Quadric::plane(points[k], m, weight);
+                let wall = Quadric::plane(points[k], m, weight).scaled(factor);
                 for v in [s, e] {
                     quadrics[v as usize] = quadrics[v as usize].plus(&wall);
                 }

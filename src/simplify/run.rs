@@ -5,6 +5,7 @@ use super::{
     image::{ImageDriven, ImageOptions, Start},
     memoryless::Memoryless,
     quadric::QuadricMethod,
+    visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
     Error, Progress, Result,
@@ -12,6 +13,7 @@ use crate::{
     mesh::Mesh,
     raster::{BucketEngine, Model, Scene},
     view::frame_of,
+    visibility::{self, Visibility},
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
@@ -24,6 +26,43 @@ use crate::{
 /// [`Error::Usage`] for options out of range, [`Error::Input`] for a view file that cannot be used,
 /// [`Error::Interrupted`].
 pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Outcome> {
+    start(mesh, options, None, progress)
+}
+
+/// As [`simplify`] with the method [`MethodOptions::Visibility`], by a visibility of this very mesh that was measured
+/// before: it is measured once, and guides any number of runs. The result is that of [`simplify`] with the options
+/// that it was measured with, and its [`Outcome::options`] have them.
+///
+/// # Errors
+/// As [`simplify`]; [`Error::Usage`] for another method, and for a visibility of another number of triangles.
+pub fn simplify_guided(
+    mesh: &Mesh,
+    options: &Options,
+    visibility: &Visibility,
+    progress: &dyn Progress,
+) -> Result<Outcome> {
+    let MethodOptions::Visibility(own) = &options.method else {
+        return Err(Error::Usage(format!(
+            "the method `{}` has no use for a visibility; use the method `visibility`",
+            options.method.name()
+        )));
+    };
+    let options = Options {
+        method: MethodOptions::Visibility(VisibilityOptions {
+            measure: *visibility.options(),
+            ..own.clone()
+        }),
+        ..options.clone()
+    };
+    start(mesh, &options, Some(visibility), progress)
+}
+
+fn start(
+    mesh: &Mesh,
+    options: &Options,
+    visibility: Option<&Visibility>,
+    progress: &dyn Progress,
+) -> Result<Outcome> {
     options.check()?;
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
@@ -41,6 +80,7 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
             run.phase("quadric", method, target)?.0
         }
         MethodOptions::Image(own) => run.image(own, target)?,
+        MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -56,6 +96,7 @@ struct Run<'a> {
     options: Options,
     recorder: Recorder,
     phases: Vec<Phase>,
+    v_mesh: Option<f64>,
     error_rms: Option<f64>,
     progress: &'a dyn Progress,
 }
@@ -69,6 +110,7 @@ impl<'a> Run<'a> {
             options: options.clone(),
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
+            v_mesh: None,
             error_rms: None,
             progress,
         }
@@ -141,6 +183,26 @@ impl<'a> Run<'a> {
         Ok(end)
     }
 
+    /// Zhang & Turk 2002: by a visibility that is at hand, or is measured now.
+    fn guided(
+        &mut self,
+        own: &VisibilityOptions,
+        visibility: Option<&Visibility>,
+        target: Target,
+    ) -> Result<End> {
+        let measured;
+        let visibility = match visibility {
+            Some(visibility) => visibility,
+            None => {
+                measured = visibility::measure(self.mesh, &own.measure, self.progress)?;
+                &measured
+            }
+        };
+        let method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
+        self.v_mesh = Some(visibility.mesh());
+        Ok(self.phase("visibility", method, target)?.0)
+    }
+
     fn finish(self, stop: Stop) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
@@ -154,6 +216,7 @@ impl<'a> Run<'a> {
             stop,
             phases: self.phases,
             options: self.options,
+            v_mesh: self.v_mesh,
             error_rms: self.error_rms,
         })
     }

@@ -412,3 +412,85 @@ fn a_candidate_that_shows_nothing_or_lies_too_far_away_is_refused() {
         &["compare", "vast.obj", "tiny.obj", "--size", "16"],
     );
 }
+
+#[test]
+fn the_image_error_is_the_flat_error_from_the_corners_of_a_dodecahedron() {
+    let dir = folder();
+    put(&dir, "a.ply", &generate::torus(1.0, 0.4, 12, 8));
+    put(&dir, "b.ply", &generate::torus(1.0, 0.4, 10, 6));
+    let words = ["a.ply", "b.ply", "--size", "32", "--no-distance"];
+    let plain = report(&dir, 0, &words);
+    assert!(plain["image_error"].is_null() && plain["options"]["image_error"] == false);
+    let found = report(&dir, 0, &[&words[..], &["--image-error"]].concat());
+    assert_eq!(plain["rms_flat"], found["rms_flat"]);
+    let found = &found["image_error"];
+    let views = [&words[..], &["--views", "dodecahedron"]].concat();
+    let dodecahedron = report(&dir, 0, &views);
+    assert_eq!(found["rms"], dodecahedron["rms_flat"]);
+    assert_eq!(found["squared_error"], dodecahedron["squared_error_flat"]);
+    assert_eq!(found["views"], 20);
+    // Squares of sums of 4 samples.
+    let sum: f64 = dodecahedron["views"]
+        .as_array()
+        .expect("views")
+        .iter()
+        .map(|v| float(v, "squared_error_flat") / 16.0)
+        .sum();
+    assert!((float(found, "error") - sum.sqrt()).abs() < 1e-9 * sum.sqrt());
+    let refused = ["compare", "a.png", "b.png", "--image-error"];
+    put_image(&dir, "a.png", 3);
+    put_image(&dir, "b.png", 4);
+    assert!(expect(&dir, 2, &refused).contains("--image-error"));
+}
+
+fn put_image(dir: &TempDir, name: &str, level: u8) {
+    let plane = raster::Plane::filled(4, 4, level);
+    png::write_grey(&dir.path().join(name), &plane).expect("writes");
+}
+
+#[test]
+fn differences_are_drawn_in_red_over_the_reference_for_every_view() {
+    let dir = folder();
+    let mesh = generate::torus(1.0, 0.4, 12, 8);
+    put(&dir, "a.ply", &mesh);
+    put(&dir, "b.ply", &generate::torus(1.0, 0.4, 8, 6));
+    let words = [
+        "a.ply",
+        "a.ply",
+        "b.ply",
+        "--size",
+        "40",
+        "--samples",
+        "1",
+        "--no-distance",
+        "--red-differences",
+        "red",
+        "--difference-scale",
+        "4",
+        "--views",
+        "octahedron:0",
+    ];
+    report(&dir, 0, &words);
+    for view in 0..6 {
+        let path = dir.path().join(format!("red/view-{view:02}.png"));
+        let png::Picture::Rgb(sheet) = png::read(&path).expect("written") else {
+            panic!("a sheet with red in it has colours");
+        };
+        // Cells of 40 + 8 pixels; the picture that equals the reference is grey, the other one is not.
+        let red = |left: u32| {
+            let pixels = (8..48).flat_map(|y| (left..left + 40).map(move |x| (x, y)));
+            pixels
+                .filter(|&(x, y)| {
+                    let [r, g, b] = sheet.at(x, y);
+                    assert!(r >= g && g == b);
+                    r > g
+                })
+                .count()
+        };
+        assert_eq!(red(56), 0, "view {view}");
+        assert!(red(104) > 20, "view {view}");
+    }
+    assert!(!dir.path().join("red/view-06.png").exists());
+    let refused = ["compare", "a.ply", "b.ply", "--difference-scale", "4"];
+    expect(&dir, 2, &refused);
+}

@@ -159,6 +159,58 @@ fn the_parts_of_the_engine_are_closed_apart_and_hidden_by_the_casing() {
     }
 }
 
+/// Six times the volume of a part.
+fn part_volume(mesh: &Mesh, part: &[usize]) -> f64 {
+    let corners = part.iter().map(|&t| mesh.corners(t));
+    corners.map(|[a, b, c]| a.dot(b.cross(c))).sum()
+}
+
+#[test]
+fn the_parts_of_the_motor_are_closed_and_all_but_three_cavities_face_outward() {
+    for detail in 1..=3 {
+        let mesh = generate::motor(detail);
+        assert!(closed(&mesh), "detail {detail}");
+        let parts = parts(&mesh);
+        assert_eq!(parts.len(), 169);
+        let inward: Vec<usize> = (0..parts.len())
+            .filter(|&k| part_volume(&mesh, &parts[k]) < 0.0)
+            .collect();
+        assert_eq!(inward, [3, 4, 5], "after the three housings");
+        for (housing, cavity) in [(0, 3), (1, 4), (2, 5)] {
+            // Walls have a thickness: every corner of the cavity is inside the box of its housing.
+            let bounds = |part: &[usize]| {
+                let points = part.iter().flat_map(|&t| mesh.corners(t));
+                points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+                    (low.min(p), high.max(p))
+                })
+            };
+            let ((low, high), (l, h)) = (bounds(&parts[housing]), bounds(&parts[cavity]));
+            assert!((low + 0.02).cmplt(l).all() && h.cmplt(high - 0.02).all());
+        }
+    }
+    assert_eq!(generate::motor(0), generate::motor(1));
+}
+
+#[test]
+fn the_casing_hides_what_it_encases() {
+    for (detail, count) in [(1, 320 + 512), (2, 1_280 + 2_048)] {
+        let mesh = generate::encased(detail);
+        assert!(closed(&mesh));
+        assert_eq!(mesh.triangles().len(), count);
+        let parts = parts(&mesh);
+        assert_eq!(parts.len(), 3);
+        assert!(parts.iter().all(|part| part_volume(&mesh, part) > 0.0));
+        let inner = parts[0].iter().map(|&t| {
+            let [a, b, c] = mesh.corners(t);
+            doubled_normal([a, b, c]).normalize().dot(a)
+        });
+        let inner = inner.fold(f64::INFINITY, f64::min);
+        let rest = parts[1..].iter().flatten().flat_map(|&t| mesh.corners(t));
+        let outer = rest.map(math::length).fold(0.0, f64::max);
+        assert!(outer < inner, "{outer} in {inner}");
+    }
+}
+
 #[test]
 fn the_links_of_the_chain_do_not_touch() {
     let mesh = generate::interlocking_tori(64, 32);

@@ -10,7 +10,7 @@ use lodmark::{
     Silent,
     mesh::{Edges, Mesh},
     metric::{
-        difference::{Comparison, compare, signed_picture},
+        difference::{Comparison, compare, red_picture, signed_picture},
         luma::{SquaredError, ViewErrors, squared_error},
         silhouette::silhouette_histogram,
     },
@@ -295,4 +295,35 @@ proptest! {
         prop_assert_eq!(expected.counts()[1], count);
         prop_assert!(degree.iter().all(|d| d % 2 == 0));
     }
+}
+
+proptest! {
+    #[test]
+    fn a_red_picture_is_grey_where_nothing_differs_and_redder_where_more_does(
+        e: u8, a: u8, b: u8, scale in 1_u8..=255,
+    ) {
+        let pixel = |a: u8| red_picture(&plane(1, &[e]), &plane(1, &[a]), scale).expect("one pixel").at(0, 0);
+        prop_assert_eq!(pixel(e), [e; 3]);
+        let redness = |[r, g, blue]: [u8; 3]| {
+            assert_eq!(g, blue);
+            r - g
+        };
+        let shown = |a: u8| (u32::from(scale) * u32::from(e.abs_diff(a))).min(255);
+        prop_assert_eq!(u32::from(redness(pixel(a))), shown(a));
+        if e.abs_diff(a) <= e.abs_diff(b) {
+            prop_assert!(redness(pixel(a)) <= redness(pixel(b)));
+        }
+        prop_assert!(pixel(a)[1] <= e, "never lighter than the reference");
+    }
+}
+
+#[test]
+fn a_red_picture_of_other_sizes_or_scale_0_is_refused() {
+    let one = plane(1, &[7_u8]);
+    assert_refused(&one, &plane(2, &[7_u8, 8]), 1);
+    assert_refused(&one, &one, 0);
+}
+
+fn assert_refused(expected: &Plane<u8>, actual: &Plane<u8>, scale: u8) {
+    assert!(red_picture(expected, actual, scale).is_err());
 }

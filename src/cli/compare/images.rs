@@ -89,7 +89,9 @@ fn refuse_foreign(options: &Options) -> Result<()> {
         ("--samples", options.samples.is_some()),
         ("--distance-samples", options.distance_samples.is_some()),
         ("--no-distance", options.no_distance),
+        ("--image-error", options.image_error),
         ("--per-view", options.per_view),
+        ("--red-differences", options.red_differences.is_some()),
     ];
     match foreign.iter().find(|(_, given)| *given) {
         Some((name, _)) => Err(Error::Usage(format!(

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Found, Options, table, verdict};
+use super::{Found, Options, figure, table, verdict};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, report, source, terminal::Terminal},
     mesh::{Edges, Mesh, content_sha256},
     metric::{
-        appearance::{Appearance, WorstView, appearance, pictures},
+        appearance::{Appearance, WorstView, appearance, flat, image_error_views, pictures},
         luma::SquaredError,
         silhouette::{SilhouetteHistogram, silhouette_histogram},
         surface::{Distances, SurfaceDistance, surface_distance},
@@ -69,7 +69,20 @@ struct Judgement<'a> {
     distance_relative: Option<Distances>,
     /// Each way.
     distance: Option<SurfaceDistance>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    image_error: Option<ImageError>,
     views: Vec<Pictures>,
+}
+
+/// Zhang & Turk 2002, equation 5.11.
+#[derive(Serialize)]
+struct ImageError {
+    /// Root of the sum of squared differences, in levels.
+    error: f64,
+    /// The same, per pixel.
+    rms: f64,
+    squared_error: SquaredError,
+    views: usize,
 }
 
 /// One view of a candidate.
@@ -128,6 +141,29 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
             )?),
         };
         found.push(Judgement::new(reference, shape, look, distance, &set));
+    }
+    if options.image_error {
+        let (size, samples) = (options.size.unwrap_or(512), options.samples.unwrap_or(2));
+        let set = image_error_views(&sphere, size, samples)?.enter_frame(frame);
+        let errors = flat(&reference_scene, &scenes, &set, terminal)?;
+        for (judgement, errors) in found.iter_mut().zip(errors) {
+            judgement.image_error = Some(ImageError {
+                error: errors.total().root(),
+                rms: errors.total().rms(),
+                squared_error: errors.total(),
+                views: errors.views().len(),
+            });
+        }
+    }
+    if let Some(folder) = &options.red_differences {
+        figure::write(
+            options,
+            folder,
+            &reference_scene,
+            &scenes,
+            &framed,
+            terminal,
+        )?;
     }
     if let Some(path) = &options.difference {
         write_difference(options, path, &reference_scene, &scenes, &framed, &found)?;
@@ -224,6 +260,7 @@ impl<'a> Judgement<'a> {
             distance_max: absolute.map(|d| d.max),
             distance_relative: distance.and_then(|d| d.relative()),
             distance,
+            image_error: None,
             views: views
                 .map(|(i, (view, (flat, gouraud)))| Pictures {
                     view: i,
@@ -261,7 +298,9 @@ fn resolved(options: &Options, set: &ViewSet) -> serde_json::Value {
         "equal": options.equal,
         "max_rms": options.max_rms,
         "difference": options.difference,
-        "difference_scale": options.difference.as_ref().map(|_| options.difference_scale()),
+        "difference_scale": options.pictured().then(|| options.difference_scale()),
+        "image_error": options.image_error,
+        "red_differences": options.red_differences,
     })
 }
 
@@ -352,6 +391,17 @@ fn show(options: &Options, reference: &Shape<'_>, found: &[Judgement<'_>]) {
             shading_name(j.worst),
             j.worst.error.rms()
         );
+    }
+    for j in found {
+        if let Some(e) = &j.image_error {
+            answer!(
+                "{}: image error {:.1} (equation 5.11, {} views), RMS {:.4}",
+                j.candidate.file.display(),
+                e.error,
+                e.views,
+                e.rms
+            );
+        }
     }
     if options.per_view {
         for j in found {

@@ -3,9 +3,10 @@
 //! Meshes are judged as Lindstrom & Turk 2000, section 5 does: 24 views of 512 x 512 pixels around the reference, with
 //! 2 x 2 samples each, flat and Gouraud. Two images are equal, or it is said where and how much they are not.
 
+mod figure;
 mod images;
 mod meshes;
-mod table;
+pub(super) mod table;
 
 use std::path::{Path, PathBuf};
 
@@ -14,10 +15,16 @@ use crate::{Error, Result, metric::surface::DEFAULT_SAMPLES, view::ViewsName};
 
 /// Measure how far meshes or images are from a reference
 #[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("pictures").multiple(true)))]
 #[command(after_help = "\
 Meshes are equal where their files hold the same: vertices, triangles and attributes in the same order, before \
 welding. Distances go both ways, and the larger one is reported; in the table as % of the diagonal of the reference's \
-bounding box, in the report in file units as well. PSNR is `-` (in the report: null) where nothing differs.")]
+bounding box, in the report in file units as well. PSNR is `-` (in the report: null) where nothing differs.
+
+The report has, for every candidate: rms_flat, rms_gouraud, psnr_flat, psnr_gouraud, squared_error_* (sum, pixels, \
+samples), worst, distance_mean, distance_rms, distance_max, views[]; with --image-error also image_error: error (the \
+root of the summed squared differences in levels, equation 5.11 of Zhang & Turk 2002), rms (the same per pixel, \
+comparable between sizes), squared_error, views (20).")]
 pub(super) struct Options {
     /// The reference: a mesh (.obj, .ply, .stl) or an image (.png; .npy of ids or depths)
     #[arg(value_name = "REF")]
@@ -40,6 +47,9 @@ pub(super) struct Options {
     /// Do not measure distances
     #[arg(long)]
     no_distance: bool,
+    /// Measure equation 5.11 of Zhang & Turk 2002 too: flat, from the 20 corners of a dodecahedron
+    #[arg(long)]
+    image_error: bool,
     /// Print every view
     #[arg(long)]
     per_view: bool,
@@ -50,10 +60,14 @@ pub(super) struct Options {
     #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     max_rms: Option<f64>,
     /// Write expected, actual and difference of the worst view of every candidate, one row each
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", group = "pictures")]
     difference: Option<PathBuf>,
-    /// How much the picture exaggerates differences, 1 to 255 [default: 2]
-    #[arg(long, value_name = "FACTOR", requires = "difference", value_parser = clap::value_parser!(u8).range(1..))]
+    /// Write a sheet for every view: the reference and the candidates, flat, and above each the reference with the
+    /// differences in red (Zhang & Turk 2002, Figure 8)
+    #[arg(long, value_name = "DIR", group = "pictures")]
+    red_differences: Option<PathBuf>,
+    /// How much pictures exaggerate differences, 1 to 255 [default: 2]
+    #[arg(long, value_name = "FACTOR", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..))]
     difference_scale: Option<u8>,
 }
 
@@ -100,6 +114,11 @@ impl Options {
 
     fn distance_samples(&self) -> Option<u32> {
         (!self.no_distance).then(|| self.distance_samples.unwrap_or(DEFAULT_SAMPLES))
+    }
+
+    /// Whether any picture is asked for.
+    fn pictured(&self) -> bool {
+        self.difference.is_some() || self.red_differences.is_some()
     }
 
     fn difference_scale(&self) -> u8 {

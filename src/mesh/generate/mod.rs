@@ -1,14 +1,18 @@
 //! Generated meshes: the same bits everywhere, for tests, benchmarks, the demo and the self-check.
 //!
 //! Each is rounded to `f32`. The closed ones ([`tetrahedron`], [`cube`], [`icosphere`], [`shells`], [`torus`],
-//! [`interlocking_tori`], [`textured_torus`], [`engine`]) have two triangles at every edge, oriented outward.
+//! [`interlocking_tori`], [`textured_torus`], [`engine`], [`motor`],
+//! [`encased`]) have two triangles at every edge, oriented outward.
 //! Counts beyond what a function's documentation allows are brought into that range.
 
 mod cube;
+mod encased;
 mod engine;
 mod grid;
+mod motor;
 mod pcg;
 mod probe;
+mod solids;
 mod sphere;
 pub(crate) mod subdivision;
 mod torus;
@@ -18,8 +22,10 @@ use glam::DVec3;
 use super::{Attributes, ChannelKind, Mesh, MeshParts};
 
 pub use cube::cube;
+pub use encased::encased;
 pub use engine::engine;
 pub use grid::{Height, grid};
+pub use motor::motor;
 pub use pcg::Pcg32;
 pub use probe::probe;
 pub use sphere::{icosphere, shells, tetrahedron};
@@ -39,6 +45,8 @@ pub const NAMES: &[&str] = &[
     "engine",
     "textured-torus",
     "probe",
+    "motor",
+    "encased",
 ];
 
 /// The mesh of a name in [`NAMES`], of a size that suits a demonstration; `None` for other names.
@@ -57,6 +65,8 @@ pub fn by_name(name: &str) -> Option<Mesh> {
         "engine" => engine(2),
         "textured-torus" => textured_torus(96, 48),
         "probe" => probe(),
+        "motor" => motor(1),
+        "encased" => encased(2),
         _ => return None,
     })
 }

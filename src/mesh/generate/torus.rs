@@ -74,7 +74,7 @@ pub(super) fn round_surface(major: f64, minor: f64, around: u32, across: u32) ->
 }
 
 /// A closed curve swept around the z axis: `profile` gives its point (outward, up) at two angles.
-fn swept(n: u32, m: u32, major: f64, profile: impl Fn(f64, f64) -> [f64; 2]) -> Surface {
+pub(super) fn swept(n: u32, m: u32, major: f64, profile: impl Fn(f64, f64) -> [f64; 2]) -> Surface {
     let mut positions = Vec::with_capacity(n as usize * m as usize);
     for i in 0..n {
         let theta = TAU * (f64::from(i) / f64::from(n));

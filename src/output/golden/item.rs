@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{files, pictures, results};
+use super::{files, hidden, pictures, results};
 use crate::{
     Progress, Result,
     mesh::{Mesh, content_sha256},
@@ -60,6 +60,11 @@ pub const GROUPS: &[Group] = &[
         name: "simplify",
         about: "simplified meshes of every method",
         run: results::simplified,
+    },
+    Group {
+        name: "hidden",
+        about: "guided by visibility, and interiors in some views",
+        run: hidden::hidden,
     },
     Group {
         name: "replay",

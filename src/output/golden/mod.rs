@@ -10,6 +10,7 @@
 
 mod files;
 mod folder;
+mod hidden;
 mod item;
 mod pictures;
 mod record;

@@ -288,7 +288,7 @@ fn image(own: &ImageOptions, target: Amount) -> Options {
 }
 
 /// The mesh, how many collapses led to it, and the bits of its error. Not how many evaluations: that is effort.
-fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
+pub(super) fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
     collector.mesh(name, &outcome.mesh);
     let mut text = format!("{}", outcome.mesh.triangles().len());
     for phase in &outcome.phases {

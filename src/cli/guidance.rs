@@ -1,0 +1,65 @@
+//! Where a command that is guided by visibility gets it from: a measurement, or a file that holds one.
+
+use std::path::PathBuf;
+
+use super::visibility::parse_cameras;
+use crate::{
+    Error, Result, io,
+    mesh::Mesh,
+    simplify::visibility::VisibilityOptions,
+    visibility::{Options as MeasureOptions, Survey, Visibility},
+};
+
+/// Options of the method `visibility`.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(super) struct Guidance {
+    /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, instead of measuring
+    #[arg(long, value_name = "FILE")]
+    visibility: Option<PathBuf>,
+    /// Visibility method: measure with 6, 18, 66, 258, 1026 or 4098 cameras [default: 258]
+    #[arg(long, value_name = "N", conflicts_with = "visibility", value_parser = parse_cameras)]
+    cameras: Option<u32>,
+    /// Visibility method: width and height of the ID buffers [default: 480]
+    #[arg(long, value_name = "PIXELS", conflicts_with = "visibility")]
+    visibility_size: Option<u32>,
+}
+
+impl Guidance {
+    /// The options of the library, without the file.
+    pub(super) fn options(&self) -> VisibilityOptions {
+        let default = MeasureOptions::default();
+        VisibilityOptions {
+            measure: MeasureOptions {
+                octahedron: self.cameras.unwrap_or(default.octahedron),
+                size: self.visibility_size.unwrap_or(default.size),
+                ..default
+            },
+            ..VisibilityOptions::default()
+        }
+    }
+
+    /// The names of all options, and which of them are given.
+    pub(super) fn given(&self) -> [(&'static str, bool); 3] {
+        [
+            ("--visibility", self.visibility.is_some()),
+            ("--cameras", self.cameras.is_some()),
+            ("--visibility-size", self.visibility_size.is_some()),
+        ]
+    }
+
+    /// The visibility in the file, where one is given.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Input`] for a file that cannot be used, or that belongs to another mesh.
+    pub(super) fn read(&self, mesh: &Mesh) -> Result<Option<Visibility>> {
+        let Some(path) = &self.visibility else {
+            return Ok(None);
+        };
+        let bytes = io::bytes::read(path)?;
+        let survey = Survey::from_bytes(&bytes, path)?;
+        match survey.finish(mesh) {
+            Err(Error::Usage(message)) => Err(Error::input(path, message)),
+            other => other.map(Some),
+        }
+    }
+}

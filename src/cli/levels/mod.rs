@@ -1,0 +1,285 @@
+//! `lodmark levels`: methods against each other from fine to coarse, as in Figure 4 of Zhang & Turk 2002.
+//!
+//! Every method runs once, down to the coarsest level; the levels above it come from its history and are bit-equal to
+//! runs of their own. Deviation for the image-driven method: pictures take over where they would for the finest level.
+
+mod chart;
+mod judge;
+
+use std::{io::Write, path::PathBuf};
+
+use clap::ValueEnum;
+
+use super::{
+    Common, Verdict, compare::table, guidance::Guidance, report, source, terminal::Terminal,
+};
+use crate::{
+    Error, Result,
+    collapse::Topology,
+    io,
+    mesh::{Mesh, canonical},
+    metric::surface::DEFAULT_SAMPLES,
+    simplify::{
+        Amount, MethodOptions, Options as RunOptions, Outcome,
+        image::{ImageOptions, Start},
+        simplify, simplify_guided,
+        visibility::VisibilityOptions,
+    },
+};
+use judge::{Judge, Level};
+
+/// Compare methods over a range of levels: image error, distance, a table and a chart
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Writes levels.csv and levels.svg into DIR. The image error is equation 5.11 of Zhang & Turk 2002: the root of the summed \
+squared luma differences, flat, from the 20 corners of a dodecahedron; rms is the same per pixel, in levels. Distances \
+are the larger of both ways, in % of the diagonal of the original's bounding box. `less` says how much less image error \
+a method has than the first one, in %; 0 where neither has any.")]
+pub(super) struct Options {
+    /// The mesh to simplify: .obj, .ply or .stl
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// Folder for the results; made if missing
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// The methods; the first is what the others are measured by
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "NAME,...",
+        default_value = "quadric,visibility"
+    )]
+    methods: Vec<Method>,
+    /// The levels, in % of the triangles
+    #[arg(long, value_delimiter = ',', value_name = "PERCENT,...", default_value = "50,25,12,6,3,1.5,0.75", value_parser = parse_percent)]
+    levels: Vec<f64>,
+    /// Width and height of the images
+    #[arg(long, value_name = "PIXELS", default_value_t = 512)]
+    size: u32,
+    /// Samples per pixel along each axis: 1, 2 or 4
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    samples: u32,
+    /// Points on each surface that distances are measured at [default: 500000]
+    #[arg(long, value_name = "N", conflicts_with = "no_distance", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    distance_samples: Option<u32>,
+    /// Do not measure distances
+    #[arg(long)]
+    no_distance: bool,
+    /// Let holes close and parts merge
+    #[arg(long)]
+    topology_free: bool,
+    #[command(flatten)]
+    guidance: Guidance,
+    /// Write every level too, as METHOD-PERCENT.ply
+    #[arg(long)]
+    meshes: bool,
+    /// Do not unite vertices with equal positions
+    #[arg(long)]
+    no_weld: bool,
+}
+
+/// Methods that need no other target than a number of triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Lindstrom & Turk 2000
+    Image,
+    /// Lindstrom & Turk 1998/99
+    Memoryless,
+    /// Garland & Heckbert 1997/98
+    Quadric,
+    /// Zhang & Turk 2002
+    Visibility,
+}
+
+fn parse_percent(text: &str) -> Result<f64, String> {
+    let percent: f64 = text
+        .parse()
+        .map_err(|_| "expected numbers such as 50,25,12.5".to_string())?;
+    if percent > 0.0 && percent <= 100.0 {
+        Ok(percent)
+    } else {
+        Err(format!(
+            "{text} % is no level; expected above 0 and up to 100"
+        ))
+    }
+}
+
+impl Options {
+    /// Refuses what makes no sense before anything is read; the levels from fine to coarse.
+    fn check(&self) -> Result<Vec<f64>> {
+        for (i, method) in self.methods.iter().enumerate() {
+            if self.methods[..i].contains(method) {
+                return Err(Error::Usage(
+                    "--methods names a method twice; expected different ones".into(),
+                ));
+            }
+        }
+        if !self.methods.contains(&Method::Visibility)
+            && let Some((name, _)) = self.guidance.given().iter().find(|(_, given)| *given)
+        {
+            return Err(Error::Usage(format!(
+                "{name} means nothing without the method `visibility`; leave it out or add it to --methods"
+            )));
+        }
+        let mut levels = self.levels.clone();
+        levels.sort_by(|a, b| b.total_cmp(a));
+        levels.dedup();
+        Ok(levels)
+    }
+
+    fn distance_samples(&self) -> Option<u32> {
+        (!self.no_distance).then(|| self.distance_samples.unwrap_or(DEFAULT_SAMPLES))
+    }
+
+    /// Runs a method down to the last of `targets`.
+    fn run(
+        &self,
+        method: Method,
+        mesh: &Mesh,
+        targets: &[usize],
+        terminal: &Terminal,
+    ) -> Result<Outcome> {
+        let (finest, coarsest) = match targets {
+            [first, .., last] => (*first, *last),
+            [only] => (*only, *only),
+            [] => return Err(Error::Internal("no levels".into())),
+        };
+        let amount = Amount::Triangles(coarsest as u64);
+        let mut options = match method {
+            Method::Image => RunOptions::image(amount),
+            Method::Memoryless => RunOptions::memoryless(amount),
+            Method::Quadric => RunOptions::quadric(amount),
+            Method::Visibility => RunOptions::visibility(amount),
+        };
+        if self.topology_free {
+            options.rules.topology = Topology::Free;
+        }
+        match &mut options.method {
+            MethodOptions::Image(own) => {
+                let start = Start::Auto.triangles(finest);
+                *own = ImageOptions {
+                    start: Start::Triangles(start as u64),
+                    ..own.clone()
+                };
+            }
+            MethodOptions::Visibility(own) => {
+                *own = VisibilityOptions {
+                    quadric: own.quadric,
+                    ..self.guidance.options()
+                };
+                if let Some(visibility) = self.guidance.read(mesh)? {
+                    return simplify_guided(mesh, &options, &visibility, terminal);
+                }
+            }
+            MethodOptions::Memoryless(_) | MethodOptions::Quadric(_) => {}
+        }
+        simplify(mesh, &options, terminal)
+    }
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let percents = options.check()?;
+    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
+    source::require_triangles(&options.input, &mesh)?;
+    let mesh = canonical(&mesh).mesh;
+    let count = mesh.triangles().len();
+    let folder = &options.folder;
+    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    let (csv, svg) = (folder.join("levels.csv"), folder.join("levels.svg"));
+    source::require_outputs(
+        [Some(&csv), Some(&svg), common.json.as_ref()]
+            .into_iter()
+            .flatten(),
+    )?;
+    let targets = percents
+        .iter()
+        .map(|p| Amount::Ratio(p / 100.0).triangles(count))
+        .collect::<Result<Vec<_>>>()?;
+    let mut judge = Judge::new(
+        &mesh,
+        options.size,
+        options.samples,
+        options.distance_samples(),
+    )?;
+    let mut runs = Vec::new();
+    for &method in &options.methods {
+        let outcome = options.run(method, &mesh, &targets, terminal)?;
+        let name = outcome.options.method.name();
+        judge.levels(name, &outcome, &percents, &targets, |percent, level| {
+            if options.meshes {
+                io::write(&folder.join(format!("{name}-{percent}.ply")), level)?;
+            }
+            Ok(())
+        })?;
+        runs.push(serde_json::json!({ "options": outcome.options, "v_mesh": outcome.v_mesh }));
+    }
+    let levels = judge.finish(terminal)?;
+    let text = judge::csv(&levels);
+    io::atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
+    let title = format!("{}, {count} triangles", options.input.display());
+    let chart = chart::svg(&title, &levels)?;
+    io::atomic::write(&svg, |file: &mut dyn Write| {
+        file.write_all(chart.as_bytes())
+    })?;
+    let means = judge::means(&levels);
+    report(
+        common,
+        "levels",
+        serde_json::json!({
+            "input": options.input,
+            "levels": percents,
+            "size": options.size,
+            "samples": options.samples,
+            "distance_samples": options.distance_samples(),
+            "runs": runs,
+        }),
+        serde_json::json!({
+            "triangles_in": count,
+            "levels": levels,
+            "mean_less_image_error": means.iter().map(|&(name, mean)| {
+                serde_json::json!({ "method": name, "percent": mean })
+            }).collect::<Vec<_>>(),
+        }),
+    )?;
+    terminal.finish();
+    show(&levels, &means, terminal);
+    answer!("{} and {}: written", csv.display(), svg.display());
+    Ok(Verdict::Good)
+}
+
+fn show(levels: &[Level], means: &[(&'static str, f64)], terminal: &Terminal) {
+    let head = [
+        "method",
+        "level %",
+        "triangles",
+        "image error",
+        "RMS",
+        "mean %",
+        "max %",
+        "less %",
+    ];
+    let mut rows = vec![head.map(String::from).to_vec()];
+    for level in levels {
+        if !level.reached {
+            terminal.say(&format!(
+                "{}: no edge may be collapsed any more at {} triangles, above the {} of {} %; try --topology-free",
+                level.method, level.triangles, level.target, level.percent
+            ));
+        }
+        rows.push(vec![
+            level.method.into(),
+            level.percent.to_string(),
+            level.triangles.to_string(),
+            format!("{:.1}", level.image_error),
+            format!("{:.4}", level.rms),
+            table::number(level.distance_mean.map(|d| 100.0 * d), 5),
+            table::number(level.distance_max.map(|d| 100.0 * d), 4),
+            table::number(level.less, 2),
+        ]);
+    }
+    answer!("{}", table::aligned(&rows));
+    for (name, mean) in means {
+        answer!("{name}: {mean:.2} % less image error on average");
+    }
+}

@@ -1,0 +1,97 @@
+//! `lodmark merge-visibility`: parts of one measurement put together.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    Error, Result,
+    cli::{Common, Verdict, report, source, terminal::Terminal},
+    io,
+    visibility::Survey,
+};
+
+/// Put partial visibility results together, in any order: the bytes of a run over all their views
+#[derive(Debug, clap::Args)]
+pub(in crate::cli) struct Options {
+    /// Files that `visibility --partial` or this command wrote
+    #[arg(value_name = "PARTIAL", required = true)]
+    partials: Vec<PathBuf>,
+    /// Where to write the sum; an existing file is replaced
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+pub(in crate::cli) fn run(
+    options: &Options,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<Verdict> {
+    let outputs = [Some(&options.out), common.json.as_ref()];
+    source::require_outputs(outputs.into_iter().flatten())?;
+    let mut sum: Option<Survey> = None;
+    for path in &options.partials {
+        let part = read(path)?;
+        match &mut sum {
+            None => sum = Some(part),
+            Some(sum) => sum.merge(&part).map_err(|error| match error {
+                Error::Usage(message) => Error::Usage(format!("{}: {message}", path.display())),
+                other => other,
+            })?,
+        }
+    }
+    let sum = sum.ok_or_else(|| Error::Usage("no files to merge; name at least one".into()))?;
+    write(&options.out, &sum)?;
+    if !sum.is_complete() {
+        terminal.say(&format!(
+            "not complete yet: views {} of {}",
+            ranges(&sum),
+            sum.options().cameras()
+        ));
+    }
+    report(
+        common,
+        "merge-visibility",
+        serde_json::json!({ "partials": options.partials, "measurement": sum.options() }),
+        summary(&sum),
+    )?;
+    tell(&options.out, &sum);
+    Ok(Verdict::Good)
+}
+
+/// Reads a survey.
+pub(super) fn read(path: &Path) -> Result<Survey> {
+    Survey::from_bytes(&io::bytes::read(path)?, path)
+}
+
+/// Writes a survey; an existing file is replaced as a whole.
+pub(super) fn write(path: &Path, survey: &Survey) -> Result<()> {
+    let bytes = survey.to_bytes();
+    io::atomic::write(path, |file| file.write_all(&bytes))
+}
+
+/// What a survey holds, for a report.
+pub(super) fn summary(survey: &Survey) -> serde_json::Value {
+    let views: Vec<[u32; 2]> = survey.views().iter().map(|r| [r.start, r.end]).collect();
+    serde_json::json!({
+        "views": views,
+        "complete": survey.is_complete(),
+        "triangles": survey.triangle_count(),
+        "cameras": survey.options().cameras(),
+    })
+}
+
+/// Says what a survey holds.
+pub(super) fn tell(path: &Path, survey: &Survey) {
+    answer!(
+        "{}: views {} of {} cameras, {} triangles",
+        path.display(),
+        ranges(survey),
+        survey.options().cameras(),
+        survey.triangle_count()
+    );
+}
+
+fn ranges(survey: &Survey) -> String {
+    let ranges = survey.views().iter();
+    let texts = ranges.map(|r| format!("{}..{}", r.start, r.end));
+    texts.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,8 @@
+//! `lodmark visibility` and `lodmark merge-visibility`: what views all around a mesh see of it.
+
+mod chart;
+mod measure;
+mod merge;
+
+pub(super) use measure::{Options, parse_cameras, run};
+pub(super) use merge::{Options as MergeOptions, run as run_merge};

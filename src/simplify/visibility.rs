@@ -1,0 +1,116 @@
+//! Visibility-guided simplification: Zhang & Turk 2002, section 5.
+//!
+//! A vertex carries two quadrics. `Q`, that of [`quadric`](super::quadric), decides where the new vertex lies. `Q_v`,
+//! in which the planes of a face and of its boundary edges count by the square of its visibility (equations 5.8 to
+//! 5.10), decides which edge is next; it never places, because it is singular where nothing is seen. Both are sums
+//! over the ends of an edge. Deviation: the cost is `Q_v + 1e-6 Q`. Where nothing is seen all `Q_v` are 0, and the
+//! second term lets such parts keep their shape as long as possible, as under the method without visibility.
+//! Weights belong to the triangles of the input; nothing is measured again during a run. Costs: as those of the
+//! quadric method, in frame units.
+
+use serde::{Deserialize, Serialize};
+
+use super::quadric::{QuadricMethod, QuadricOptions};
+use crate::{
+    Error, Result,
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    visibility,
+};
+
+/// How much `Q` counts beside `Q_v`: enough to order what nobody sees, and no more than a visibility of 0.001.
+pub const TIE_WEIGHT: f64 = 1e-6;
+
+/// Options of the method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct VisibilityOptions {
+    /// The planes of faces and boundaries.
+    pub quadric: QuadricOptions,
+    /// How much the cost without visibility counts beside the cost with it; at least 0.
+    pub tie_weight: f64,
+    /// How the visibility of the input's triangles is measured, or was.
+    pub measure: visibility::Options,
+}
+
+impl Default for VisibilityOptions {
+    fn default() -> Self {
+        Self {
+            quadric: QuadricOptions::default(),
+            tie_weight: TIE_WEIGHT,
+            measure: visibility::Options::default(),
+        }
+    }
+}
+
+/// The method: two quadrics per vertex.
+#[derive(Clone, Debug)]
+pub struct VisibilityMethod {
+    placing: QuadricMethod,
+    ordering: QuadricMethod,
+    tie_weight: f64,
+}
+
+impl VisibilityMethod {
+    /// The quadrics of a mesh whose triangle `t` has the visibility `visibility[t]`, in [0, 1]. O(n).
+    ///
+    /// # Errors
+    /// [`Error::Usage`] unless there is one visibility for every triangle, each in [0, 1].
+    pub fn new(live: &LiveMesh, options: &VisibilityOptions, visibility: &[f64]) -> Result<Self> {
+        if visibility.len() != live.triangle_ids() as usize {
+            return Err(Error::Usage(format!(
+                "{} visibilities for {} triangles; expected as many",
+                visibility.len(),
+                live.triangle_ids()
+            )));
+        }
+        if let Some((t, v)) = (0..)
+            .zip(visibility)
+            .find(|(_, v)| !(0.0..=1.0).contains(*v))
+            .map(|(t, v): (usize, _)| (t, v))
+        {
+            return Err(Error::Usage(format!(
+                "the visibility of triangle {t} is {v}; expected a number from 0 to 1"
+            )));
+        }
+        Ok(Self {
+            placing: QuadricMethod::new(live, &options.quadric),
+            ordering: QuadricMethod::weighted(live, &options.quadric, |t| {
+                visibility[t as usize] * visibility[t as usize]
+            }),
+            tie_weight: options.tie_weight,
+        })
+    }
+
+    /// `Q`: where new vertices lie.
+    #[must_use]
+    pub fn placing(&self) -> &QuadricMethod {
+        &self.placing
+    }
+
+    /// `Q_v`: which edge is next.
+    #[must_use]
+    pub fn ordering(&self) -> &QuadricMethod {
+        &self.ordering
+    }
+}
+
+impl Method for VisibilityMethod {
+    type Scratch = ();
+
+    fn scratch(&self) {}
+
+    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+        let placed = self.placing.propose(site, &mut ())?;
+        let [u, w] = site.ring.ends;
+        let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
+        Ok(Proposal {
+            geometric: seen.error(placed.position.position()) + self.tie_weight * placed.geometric,
+            ..placed
+        })
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.placing.committed(live, patch);
+        self.ordering.committed(live, patch);
+    }
+}

@@ -1,0 +1,130 @@
+//! What no view sees, removed.
+
+use super::Visibility;
+use crate::{
+    Error, Result,
+    mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, VertexTriangles},
+};
+
+/// The mesh without the triangles of which no view sees anything, from neither side; those that touch a seen one at a
+/// vertex stay where `rings` is 1, those that touch these where it is 2, and so on.
+///
+/// Order, attributes and materials of the rest are kept; vertices and wedges that nothing uses any more are dropped.
+/// Views that were not drawn may see what is removed: rings are the margin. O(rings x triangles).
+///
+/// # Errors
+/// [`Error::Usage`] where `visibility` belongs to a mesh of another size, or nothing would be left.
+pub fn remove_hidden(mesh: &Mesh, visibility: &Visibility, rings: u32) -> Result<Mesh> {
+    let views = visibility.views();
+    if views.len() != mesh.triangles().len() {
+        return Err(Error::Usage(format!(
+            "visibility of {} triangles for a mesh of {}; expected that of the same mesh",
+            views.len(),
+            mesh.triangles().len()
+        )));
+    }
+    let mut kept: Vec<bool> = views.iter().map(|&n| n > 0).collect();
+    if rings > 0 {
+        grow(mesh, &mut kept, rings);
+    }
+    if !kept.contains(&true) {
+        return Err(Error::Usage(
+            "no view sees any triangle; expected something to keep: use larger ID buffers".into(),
+        ));
+    }
+    part(mesh, &kept).map_err(Error::Internal)
+}
+
+/// Adds `rings` times the triangles at the vertices of those that are kept.
+fn grow(mesh: &Mesh, kept: &mut [bool], rings: u32) {
+    let around = VertexTriangles::of(mesh);
+    let mut reached = vec![false; mesh.positions().len()];
+    let mut border: Vec<u32> = (0..kept.len() as u32)
+        .filter(|&t| kept[t as usize])
+        .collect();
+    for _ in 0..rings {
+        let mut next = Vec::new();
+        for &t in &border {
+            for v in mesh.triangles()[t as usize] {
+                if std::mem::replace(&mut reached[v as usize], true) {
+                    continue;
+                }
+                for &neighbor in around.at(v) {
+                    if !std::mem::replace(&mut kept[neighbor as usize], true) {
+                        next.push(neighbor);
+                    }
+                }
+            }
+        }
+        if next.is_empty() {
+            break;
+        }
+        border = next;
+    }
+}
+
+/// The kept triangles of a mesh, with what they use.
+fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh, String> {
+    let of_kept = |t: &usize| kept[*t];
+    let chosen: Vec<usize> = (0..kept.len()).filter(of_kept).collect();
+    let mut vertices = Renumbering::new(mesh.positions().len());
+    let triangles = chosen
+        .iter()
+        .map(|&t| mesh.triangles()[t].map(|v| vertices.of(v)))
+        .collect();
+    let attributes = mesh.attributes();
+    let mut wedges = Renumbering::new(attributes.wedge_count());
+    let corners: Vec<[u32; 3]> = if attributes.is_empty() {
+        Vec::new()
+    } else {
+        let corners = chosen.iter().map(|&t| attributes.corners()[t]);
+        corners.map(|c| c.map(|w| wedges.of(w))).collect()
+    };
+    let kinds: Vec<ChannelKind> = attributes.channels().iter().map(|c| c.kind).collect();
+    let rows = wedges.old.iter().flat_map(|&w| attributes.row(w));
+    let attributes = Attributes::new(&kinds, rows.copied().collect(), corners)?;
+    let materials = mesh.materials();
+    let of_triangle = if materials.of_triangle.is_empty() {
+        Vec::new()
+    } else {
+        chosen.iter().map(|&t| materials.of_triangle[t]).collect()
+    };
+    Mesh::new(MeshParts {
+        positions: vertices
+            .old
+            .iter()
+            .map(|&v| mesh.positions()[v as usize])
+            .collect(),
+        triangles,
+        attributes,
+        materials: Materials {
+            of_triangle,
+            ..materials.clone()
+        },
+        precision: mesh.precision(),
+    })
+}
+
+/// New numbers in the order of first use.
+struct Renumbering {
+    new: Vec<u32>,
+    old: Vec<u32>,
+}
+
+impl Renumbering {
+    fn new(count: usize) -> Self {
+        Self {
+            new: vec![u32::MAX; count],
+            old: Vec::new(),
+        }
+    }
+
+    fn of(&mut self, old: u32) -> u32 {
+        let new = &mut self.new[old as usize];
+        if *new == u32::MAX {
+            *new = self.old.len() as u32;
+            self.old.push(old);
+        }
+        *new
+    }
+}
