@@ -94,3 +94,94 @@ fn area_weights(k: u32) -> Vec<f64> {
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * math::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The weighted sum of max(0, r . n) over the cameras, divided by what the whole sphere gives: a quarter of the
+    /// number of cameras, because the mean of max(0, cos) over the sphere is 1/4.
+    fn response(towards: &[DVec3], weights: &[f64], n: DVec3) -> f64 {
+        let sum: f64 = towards
+            .iter()
+            .zip(weights)
+            .map(|(r, w)| r.dot(n).max(0.0) * w)
+            .sum();
+        4.0 * sum / towards.len() as f64
+    }
+
+    #[test]
+    fn the_cells_of_the_cameras_have_other_areas() {
+        for (k, count, smallest, largest) in [
+            (0, 6, 1.0, 1.0),
+            (1, 18, 0.649_040_687_816_356_4, 1.175_479_656_091_822),
+            (2, 66, 0.553_859_875_335_600_9, 1.190_490_484_880_175_2),
+            (3, 258, 0.531_082_026_029_388_5, 1.480_849_869_526_269_3),
+            (4, 1_026, 0.525_464_303_232_604_1, 1.603_713_765_505_115),
+        ] {
+            let weights = area_weights(k);
+            assert_eq!(weights.len(), count);
+            let found = weights
+                .iter()
+                .fold((f64::MAX, 0.0), |(a, b), &w| (a.min(w), f64::max(b, w)));
+            assert!((found.0 - smallest).abs() < 1e-9, "{k}: {}", found.0);
+            assert!((found.1 - largest).abs() < 1e-9, "{k}: {}", found.1);
+            let sum: f64 = weights.iter().sum();
+            assert!((sum - count as f64).abs() < 1e-9);
+            // Weights of 2 would not fit in the integers they become.
+            assert!(found.1 < 1.9);
+        }
+        assert!(area_weights(5).iter().all(|&w| w < 1.9));
+    }
+
+    #[test]
+    fn cameras_with_equal_weights_add_up_to_other_sums() {
+        for (k, along_z, along_diagonal) in [
+            (1, 3.828_427_124_746_19, 4.181_540_550_352_055_5),
+            (2, 15.586_651_631_673_504, 16.239_219_961_374_562),
+            (3, 62.738_578_679_618_93, 64.616_999_976_080_75),
+        ] {
+            let towards = octahedron(k);
+            let equal = vec![1.0; towards.len()];
+            for (n, expected) in [
+                (DVec3::Z, along_z),
+                (DVec3::ONE.normalize(), along_diagonal),
+            ] {
+                let sum = response(&towards, &equal, n) * towards.len() as f64 / 4.0;
+                assert!((sum - expected).abs() < 1e-9, "{k}: {sum}");
+            }
+        }
+    }
+
+    #[test]
+    fn weighted_cameras_prefer_a_direction() {
+        let weights = area_weights(3);
+        let towards: Vec<DVec3> = octahedron(3).into_iter().map(turned).collect();
+        for n in octahedron(4) {
+            let share = response(&towards, &weights, n);
+            assert!((0.993..1.0031).contains(&share), "{n}: {share}");
+        }
+    }
+
+    #[test]
+    fn the_turned_cameras_are_no_rotation_or_an_aligned_one() {
+        let (old, new) = (octahedron(2), octahedron(2).into_iter().map(turned));
+        let new: Vec<DVec3> = new.collect();
+        for (a, b) in [(0, 1), (2, 31), (17, 60), (5, 44)] {
+            assert!((old[a].dot(old[b]) - new[a].dot(new[b])).abs() < 1e-12);
+        }
+        let handed = |d: &[DVec3]| d[0].dot(d[2].cross(d[4]));
+        assert!((handed(&new) - handed(&old)).abs() < 1e-12);
+        for camera in all_turned() {
+            // Neither along nor across an axis, nor a diagonal.
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                assert!(camera.dot(axis).abs() > 1e-3 && camera.dot(axis).abs() < 0.9999);
+            }
+            assert!(camera.dot(DVec3::ONE.normalize()).abs() < 0.9999);
+        }
+    }
+
+    fn all_turned() -> Vec<DVec3> {
+        octahedron(3).into_iter().map(turned).collect()
+    }
+}

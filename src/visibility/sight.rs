@@ -94,7 +94,7 @@ impl Look<'_> {
         if shown == 0 {
             let corners = self.pieces.scene.triangles()[piece];
             let seen = self.sight.test.sees(corners)
-                && !(self.sight.test.needs_gap(corners) && self.covered_samples(piece) > 0);
+                && !(self.sight.test.may_cover(corners) && self.covered_samples(piece) > 0);
             if seen { FULL } else { 0 }
         } else if self.fractional {
             let all = u64::from(self.covered_samples(piece).max(shown));

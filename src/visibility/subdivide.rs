@@ -3,7 +3,7 @@
 //! Zhang & Turk 2002, section 4: a vertex in the middle of every edge longer than l, triangles split by how many of
 //! their edges have one, repeated until no edge is longer. Whether an edge is split, and where, depends on the positions
 //! of its ends alone, so neighbours agree and no T-vertex appears, shared vertices or not. Lengths in frame units.
-//! Limit: [`PIECE_LIMIT`] pieces; beyond it the measurement is refused.
+//! Limit: 2^24 pieces; beyond it the measurement is refused.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use glam::DVec3;
 
 use crate::{Error, Result, num::math, raster::Scene};
 
-/// Most pieces that are measured: about 4 GiB of buffers on two threads.
-pub(super) const PIECE_LIMIT: usize = 1 << 25;
+/// Most pieces that are measured.
+const PIECE_LIMIT: usize = 1 << 24;
 
 /// Triangles to measure, in the order of the faces they are part of.
 #[derive(Clone, Debug)]
@@ -38,6 +38,9 @@ impl Pieces {
             starts: Vec::new(),
         };
         if let Some(limit) = limit {
+            if division.fewest_pieces(limit) > PIECE_LIMIT as f64 {
+                return Err(too_many());
+            }
             while division.split(limit * limit)? {}
         }
         let Division {
@@ -91,7 +94,26 @@ struct Division {
     starts: Vec<u32>,
 }
 
+fn too_many() -> Error {
+    Error::Unsupported(format!(
+        "the triangles are so large or long that they make more than {PIECE_LIMIT} pieces; try a larger edge limit, \
+         smaller ID buffers, or whole triangles"
+    ))
+}
+
 impl Division {
+    /// A lower bound of the number of pieces: none is larger than an equilateral triangle, or longer, than `limit`.
+    fn fewest_pieces(&self, limit: f64) -> f64 {
+        let largest = 0.433 * limit * limit;
+        let fewest = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.positions[v as usize]);
+            let by_area = 0.5 * math::length((b - a).cross(c - a)) / largest;
+            let by_length = math::length(b - a) / limit;
+            f64::max(1.0, f64::max(by_area, by_length))
+        };
+        self.triangles.iter().map(fewest).sum()
+    }
+
     /// Splits every edge whose squared length exceeds `limit` once; false where there is none.
     fn split(&mut self, limit: f64) -> Result<bool> {
         let long = |positions: &[DVec3], a: u32, b: u32| {
@@ -137,10 +159,7 @@ impl Division {
                 divide(corners, marks, &self.positions, &mut finer);
             }
             if finer.len() > PIECE_LIMIT {
-                return Err(Error::Unsupported(format!(
-                    "the triangles are so large or long that they make more than {PIECE_LIMIT} pieces; try a larger \
-                     edge limit, smaller ID buffers, or whole triangles"
-                )));
+                return Err(too_many());
             }
         }
         starts.push(finer.len() as u32);
@@ -187,5 +206,75 @@ fn cut_corner(
         into.extend([[m, b, c], [m, c, o]]);
     } else {
         into.extend([[m, b, o], [o, b, c]]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::mesh::{Edges, Mesh, generate};
+
+    fn pieces(mesh: &Mesh, limit: f64) -> Pieces {
+        let positions = mesh.positions().to_vec();
+        Pieces::new(positions, mesh.triangles(), Some(limit)).expect("few pieces")
+    }
+
+    fn area(corners: [DVec3; 3]) -> f64 {
+        (corners[1] - corners[0])
+            .cross(corners[2] - corners[0])
+            .length()
+            / 2.0
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+
+        #[test]
+        fn a_piece_is_too_long_lost_turned_or_leaves_a_gap(limit in 0.08..3.0_f64, shape in 0..4) {
+            let mesh = match shape {
+                0 => generate::cube(),
+                1 => generate::tetrahedron(),
+                2 => generate::torus(1.0, 0.4, 7, 5),
+                _ => generate::shells(2, 1),
+            };
+            let made = pieces(&mesh, limit);
+            let scene = &made.scene;
+            let mut next = 0;
+            for face in 0..mesh.triangles().len() {
+                let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+                let whole = mesh.corners(face);
+                let mut sum = 0.0;
+                let range = made.of(face);
+                prop_assert_eq!(range.start, next);
+                next = range.end;
+                for piece in range {
+                    let corners = scene.triangles()[piece].map(|v| scene.positions()[v as usize]);
+                    for i in 0..3 {
+                        let length = (corners[i] - corners[(i + 1) % 3]).length();
+                        prop_assert!(length <= limit * (1.0 + 1e-12), "{}", length);
+                    }
+                    prop_assert!(normal(corners).dot(normal(whole)) > 0.0);
+                    sum += area(corners);
+                }
+                prop_assert!((sum / area(whole) - 1.0).abs() < 1e-9, "face {}", face);
+            }
+            prop_assert_eq!(next, scene.triangle_count());
+            // Without T-vertices a closed mesh stays closed.
+            let parts = Mesh::from_triangles(scene.positions().to_vec(), scene.triangles().to_vec());
+            let parts = parts.expect("valid");
+            let edges = Edges::of(&parts);
+            prop_assert!(edges.iter().all(|(_, triangles)| triangles.len() == 2));
+        }
+    }
+
+    #[test]
+    fn a_mesh_without_long_edges_is_copied_into_pieces() {
+        let mesh = generate::icosphere(2);
+        let made = pieces(&mesh, 1.0);
+        assert!(made.are_whole());
+        assert_eq!(made.scene.triangles(), mesh.triangles());
+        assert_eq!(made.of(7), 7..8);
     }
 }

@@ -7,12 +7,14 @@
 //! The default extends the plane of the triangle that the vertex's pixel shows to the vertex itself, so that a slope is
 //! not mistaken for an obstacle, and asks the centroid too. A triangle that covers a sample is large enough to be shown:
 //! where it is not, it is hidden, although a vertex of it may be seen.
-//! Units: pixels, in all three directions; depth grows away from the camera.
+//! Units: columns and rows in 1/65,536 pixel, depth in 2^-32 of the diameter of the bounding sphere, away from the
+//! camera.
 
 use glam::DVec3;
 
 use super::{UnseenRule, sight::EMPTY};
 use crate::{
+    num::fixed::{SubpixelBits, depth},
     raster::{Plane, Scene},
     view::View,
 };
@@ -23,19 +25,40 @@ const PLANE_TOLERANCE: f64 = 0.02;
 /// How much deeper than a neighbouring pixel a vertex may be, in pixels.
 const NEIGHBOR_TOLERANCE: f64 = 1.0;
 
+/// Units in a pixel, and half of them: pixel centres.
+const PIXEL: i32 = 1 << 16;
+const HALF: i32 = PIXEL / 2;
+
+/// The range of depth in its units.
+const DEPTH_RANGE: f64 = 4_294_967_296.0;
+
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Point {
+    x: i32,
+    y: i32,
+    depth: u32,
+    visible: bool,
+}
+
+/// The plane that a pixel shows: depth at its centre, and its change for a unit to the right and down.
+#[derive(Clone, Copy, Debug)]
+struct Slope {
+    center: f64,
+    x: f64,
+    y: f64,
+}
+
 /// Which vertices a view sees, by the depths around them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DepthTest {
     rule: UnseenRule,
     /// Pixels in a row and column.
-    size: usize,
-    /// Column, row and depth of every vertex.
-    points: Vec<DVec3>,
-    visible: Vec<bool>,
-    /// Depth `x p.x + y p.y + p.z` of the plane that every pixel shows.
-    planes: Vec<DVec3>,
-    /// The greatest depth around every pixel.
-    depths: Vec<f64>,
+    size: i32,
+    tolerance: f64,
+    points: Vec<Point>,
+    /// What every pixel shows; for the rule of neighbours the greatest depth around it, flat.
+    slopes: Vec<Slope>,
 }
 
 impl DepthTest {
@@ -48,121 +71,183 @@ impl DepthTest {
         keys: &Plane<u64>,
     ) {
         self.rule = rule;
-        self.size = keys.width() as usize;
+        self.size = keys.width() as i32;
         if rule == UnseenRule::Pixels {
             return;
         }
         let side = f64::from(keys.width());
-        let [column, line, depth, _] = &view.matrix;
+        let [column, line, inwards, _] = &view.matrix;
         let row = |m: &[f64; 4], p: DVec3| ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+        let snap = |x: f64| SubpixelBits::Sixteen.snap(x);
         self.points.clear();
         // An orthographic view has w = 1.
-        self.points.extend(scene.positions().iter().map(|&p| {
-            DVec3::new(
-                (row(column, p) * 0.5 + 0.5) * side,
-                (0.5 - row(line, p) * 0.5) * side,
-                row(depth, p) * side,
-            )
+        self.points.extend(scene.positions().iter().map(|&p| Point {
+            x: snap((row(column, p) * 0.5 + 0.5) * side),
+            y: snap((0.5 - row(line, p) * 0.5) * side),
+            depth: depth(row(inwards, p)),
+            visible: false,
         }));
-        let unit = side / 4_294_967_296.0;
-        if rule == UnseenRule::Plane {
-            self.extend_planes(scene, keys, unit);
+        let pixels = if rule == UnseenRule::Plane {
+            self.extend_planes(scene, keys);
+            PLANE_TOLERANCE
         } else {
-            self.deepest_neighbors(keys, unit);
+            self.deepest_neighbors(keys);
+            NEIGHBOR_TOLERANCE
+        };
+        self.tolerance = pixels * (DEPTH_RANGE / side);
+        let mut points = std::mem::take(&mut self.points);
+        for point in &mut points {
+            point.visible = self.is_visible(
+                f64::from(point.x),
+                f64::from(point.y),
+                f64::from(point.depth),
+            );
         }
-        let mut visible = std::mem::take(&mut self.visible);
-        visible.clear();
-        visible.extend(self.points.iter().map(|&p| self.is_visible(p)));
-        self.visible = visible;
+        self.points = points;
     }
 
     /// True where a triangle that no pixel shows is visible.
     #[inline]
     pub(super) fn sees(&self, corners: [u32; 3]) -> bool {
-        match self.rule {
-            UnseenRule::Pixels => false,
-            UnseenRule::Neighbors => corners.iter().any(|&v| self.visible[v as usize]),
-            UnseenRule::Plane => {
-                corners.iter().any(|&v| self.visible[v as usize]) || {
-                    let [a, b, c] = corners.map(|v| self.points[v as usize]);
-                    self.is_visible(((a + b) + c) / 3.0)
-                }
-            }
-        }
-    }
-
-    /// True where the rule holds only for a triangle that covers no sample, and this one might cover some.
-    #[inline]
-    pub(super) fn needs_gap(&self, corners: [u32; 3]) -> bool {
-        if self.rule != UnseenRule::Plane {
+        if self.rule == UnseenRule::Pixels {
             return false;
         }
         let [a, b, c] = corners.map(|v| self.points[v as usize]);
-        // Snapping moves a corner by less than this.
-        let margin = 1.0 / 256.0;
-        let holds_center = |a: f64, b: f64, c: f64| {
-            let (low, high) = (a.min(b).min(c) - margin, a.max(b).max(c) + margin);
-            // Centres lie at 0.5, 1.5, ...; coordinates are positive up to rounding.
-            ((low + 0.5).max(0.0) as u32) < ((high + 0.5).max(0.0) as u32)
-        };
-        holds_center(a.x, b.x, c.x) && holds_center(a.y, b.y, c.y)
+        if a.visible || b.visible || c.visible {
+            return true;
+        }
+        let third = |a: i32, b: i32, c: i32| f64::from(a + b + c) * (1.0 / 3.0);
+        self.rule == UnseenRule::Plane
+            && self.is_visible(
+                third(a.x, b.x, c.x),
+                third(a.y, b.y, c.y),
+                (f64::from(a.depth) + f64::from(b.depth) + f64::from(c.depth)) * (1.0 / 3.0),
+            )
     }
 
-    fn extend_planes(&mut self, scene: &Scene, keys: &Plane<u64>, unit: f64) {
-        self.planes.clear();
-        for &key in keys.values() {
-            if key == EMPTY {
-                self.planes.push(DVec3::new(0.0, 0.0, f64::INFINITY));
-                continue;
+    /// True where the rule holds only for a triangle that covers no sample, and this one may cover some: fast, and
+    /// never wrongly false.
+    #[inline]
+    pub(super) fn may_cover(&self, corners: [u32; 3]) -> bool {
+        if self.rule != UnseenRule::Plane {
+            return false;
+        }
+        // The picture's vertices may be snapped to 1/256 pixel, which moves them by half of that.
+        const MOVED: i32 = PIXEL / 512 + 1;
+        let [a, b, c] = corners.map(|v| self.points[v as usize]);
+        let first = |a: i32, b: i32, c: i32| (a.min(b).min(c) - MOVED + HALF - 1) >> 16;
+        let last = |a: i32, b: i32, c: i32| (a.max(b).max(c) + MOVED - HALF) >> 16;
+        let (left, right) = (first(a.x, b.x, c.x), last(a.x, b.x, c.x));
+        let (top, bottom) = (first(a.y, b.y, c.y), last(a.y, b.y, c.y));
+        if left > right || top > bottom {
+            return false;
+        }
+        if left < right || top < bottom {
+            return true;
+        }
+        // One pixel centre: is it beyond an edge, wherever the corners were moved to?
+        let (x, y) = (
+            i64::from(left * PIXEL + HALF),
+            i64::from(top * PIXEL + HALF),
+        );
+        let side = |p: Point, q: Point| {
+            let (dx, dy) = (i64::from(q.x - p.x), i64::from(q.y - p.y));
+            let value = dx * (y - i64::from(p.y)) - dy * (x - i64::from(p.x));
+            // Both ends of the edge, and both factors of the product.
+            let margin = 4 * i64::from(MOVED) * (dx.abs() + dy.abs() + i64::from(PIXEL));
+            i64::from(value > margin) - i64::from(value < -margin)
+        };
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        !(sides.contains(&1) && sides.contains(&-1))
+    }
+
+    fn extend_planes(&mut self, scene: &Scene, keys: &Plane<u64>) {
+        self.slopes.clear();
+        let mut center_y = HALF;
+        for row in keys.values().chunks(keys.width() as usize) {
+            let mut center_x = HALF;
+            for &key in row {
+                self.slopes.push(match key {
+                    EMPTY => Slope::flat(f64::INFINITY),
+                    key => {
+                        let corners = scene.triangles()[key as u32 as usize];
+                        let corners = corners.map(|v| self.points[v as usize]);
+                        Slope::of(corners, center_x, center_y)
+                            .unwrap_or_else(|| Slope::flat((key >> 32) as f64))
+                    }
+                });
+                center_x += PIXEL;
             }
-            let corners = scene.triangles()[key as u32 as usize];
-            let [a, b, c] = corners.map(|v| self.points[v as usize]);
-            let normal = (b - a).cross(c - a);
-            let (x, y) = (-normal.x / normal.z, -normal.y / normal.z);
-            let offset = a.z - (x * a.x + y * a.y);
-            self.planes.push(if offset.is_finite() {
-                DVec3::new(x, y, offset)
-            } else {
-                // Seen exactly from its edge.
-                DVec3::new(0.0, 0.0, (key >> 32) as f64 * unit)
-            });
+            center_y += PIXEL;
         }
     }
 
-    fn deepest_neighbors(&mut self, keys: &Plane<u64>, unit: f64) {
-        let (size, last) = (self.size, self.size - 1);
+    fn deepest_neighbors(&mut self, keys: &Plane<u64>) {
+        let size = self.size as usize;
         let depth = |x: usize, y: usize| match keys.values()[y * size + x] {
             EMPTY => f64::INFINITY,
-            key => (key >> 32) as f64 * unit,
+            key => (key >> 32) as f64,
         };
-        self.depths.clear();
+        let around = |i: usize| i.saturating_sub(1)..(i + 2).min(size);
+        self.slopes.clear();
         for y in 0..size {
             for x in 0..size {
                 let mut deepest = 0.0;
-                for y in y.saturating_sub(1)..=(y + 1).min(last) {
-                    for x in x.saturating_sub(1)..=(x + 1).min(last) {
-                        let found = depth(x, y);
-                        if found > deepest {
-                            deepest = found;
-                        }
+                for y in around(y) {
+                    for x in around(x) {
+                        deepest = f64::max(deepest, depth(x, y));
                     }
                 }
-                self.depths.push(deepest);
+                self.slopes.push(Slope::flat(deepest));
             }
         }
     }
 
     #[inline]
-    fn is_visible(&self, point: DVec3) -> bool {
-        // `as` saturates, and rounding may put a point on the border of the image outside.
+    fn is_visible(&self, x: f64, y: f64, depth: f64) -> bool {
+        // Rounding may put a point on the border of the image outside.
         let last = self.size - 1;
-        let (column, row) = ((point.x as usize).min(last), (point.y as usize).min(last));
-        let pixel = row * self.size + column;
-        if self.rule == UnseenRule::Plane {
-            let plane = self.planes[pixel];
-            point.z <= (plane.x * point.x + plane.y * point.y) + plane.z + PLANE_TOLERANCE
-        } else {
-            point.z <= self.depths[pixel] + NEIGHBOR_TOLERANCE
+        let (column, row) = (
+            (x as i32 >> 16).clamp(0, last),
+            (y as i32 >> 16).clamp(0, last),
+        );
+        let slope = self.slopes[(row * self.size + column) as usize];
+        let (x, y) = (
+            x - f64::from(column * PIXEL + HALF),
+            y - f64::from(row * PIXEL + HALF),
+        );
+        depth <= slope.center + (slope.x * x + slope.y * y) + self.tolerance
+    }
+}
+
+impl Slope {
+    fn flat(center: f64) -> Self {
+        Self {
+            center,
+            x: 0.0,
+            y: 0.0,
         }
+    }
+
+    /// The plane of a triangle around a pixel's centre; `None` where it is seen exactly from its edge.
+    fn of([a, b, c]: [Point; 3], center_x: i32, center_y: i32) -> Option<Self> {
+        let edge = |p: Point| {
+            DVec3::new(
+                f64::from(p.x - a.x),
+                f64::from(p.y - a.y),
+                f64::from(p.depth) - f64::from(a.depth),
+            )
+        };
+        let normal = edge(b).cross(edge(c));
+        if normal.z == 0.0 {
+            return None;
+        }
+        let (x, y) = (-normal.x / normal.z, -normal.y / normal.z);
+        let (from_x, from_y) = (f64::from(center_x - a.x), f64::from(center_y - a.y));
+        Some(Self {
+            center: f64::from(a.depth) + (x * from_x + y * from_y),
+            x,
+            y,
+        })
     }
 }

@@ -28,6 +28,7 @@ mod shapes;
 mod streams;
 mod unrender;
 mod view;
+mod visibility;
 mod zbuffer;
 
 /// A property test of so many cases that writes nothing into the source tree when it fails.
