@@ -41,6 +41,7 @@
 //! error, num -> mesh -> io
 //!                |
 //!                +-> view -> raster -> metric --+     pictures
+//!                |             +-> visibility --+
 //!                +-> collapse ------------------+-> simplify -> output -> cli     surgery meets pictures in simplify
 //! ```
 //!
@@ -52,6 +53,7 @@
 //! | [`view`] | cameras, the minimum bounding sphere, view sets and view files |
 //! | [`raster`] | clip, snap, spans, depth, ids, shading; un-rendering |
 //! | [`metric`] | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
+//! | [`visibility`] | the proof of ID buffers by ray casting |
 //! | [`collapse`] | one engine for every method: live mesh, queue, legality, wedges, history and replay |
 //! | [`simplify`] | the methods, their options and outcomes |
 //! | [`output`] | PNG, npy, JSON, contact sheets, goldens |
@@ -78,6 +80,7 @@ pub mod output;
 pub mod raster;
 pub mod simplify;
 pub mod view;
+pub mod visibility;
 
 pub use error::{Error, Result};
 pub use progress::{Progress, Silent};

@@ -9,6 +9,7 @@ macro_rules! answer {
 
 mod answers;
 mod check;
+mod check_rays;
 mod compare;
 mod demo;
 mod golden;
@@ -69,6 +70,7 @@ enum Command {
     Render(render::Options),
     Compare(compare::Options),
     Check(check::Options),
+    CheckRays(check_rays::Options),
     Inspect(inspect::Options),
     Golden(golden::Options),
     Selfcheck(selfcheck::Options),
@@ -79,14 +81,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &[
-    "visibility",
-    "merge-visibility",
-    "check-rays",
-    "bound",
-    "verify",
-    "lod",
-];
+const NOT_BUILT: &[&str] = &["visibility", "merge-visibility", "bound", "verify", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,6 +138,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
+        Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
         Command::Demo(options) => demo::run(&options, common, &terminal),
