@@ -20,6 +20,7 @@ mod metric_surface;
 mod output;
 mod quadric;
 mod raster;
+mod rays;
 mod seams;
 mod shapes;
 mod streams;
