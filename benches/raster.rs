@@ -11,7 +11,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use lodmark::{
     io,
     mesh::{Mesh, generate},
-    raster::{self, Scene},
+    raster::{self, Scene, ZBuffer},
     view::{Sphere, ViewSet, frame_of},
 };
 
@@ -45,9 +45,19 @@ fn pictures(c: &mut Criterion) {
     match io::read(&models.join("dragon.ply")) {
         Ok(loaded) => {
             let (scene, set) = views(&loaded.mesh, 480);
-            group.bench_function("ids of the dragon at 480x480", |b| {
-                b.iter(|| black_box(raster::keys(&scene, &set.views[0], &set)));
-            });
+            for threads in [1, 2] {
+                let mut buffer = ZBuffer::new(threads);
+                let mut views = set.views.iter().cycle();
+                let name =
+                    format!("ids of the dragon at 480x480, {threads} thread(s), buffers reused");
+                group.bench_function(name, |b| {
+                    b.iter(|| {
+                        let view = views.next().expect("a cycle does not end");
+                        buffer.draw(&scene, view, &set);
+                        black_box(buffer.keys());
+                    });
+                });
+            }
         }
         Err(e) => println!("the dragon is left out: {e}"),
     }

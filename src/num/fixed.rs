@@ -45,7 +45,9 @@ impl SubpixelBits {
     #[inline]
     #[must_use]
     pub fn snap(self, x: f64) -> i32 {
-        (x * f64::from(self.scale())).round_ties_even() as i32
+        // Added to 1.5 * 2^52, a number loses its fraction, ties to even, and stands in the low bits as an integer.
+        // `round_ties_even` is a call to the C library where the processor has no instruction for it.
+        (x * f64::from(self.scale()) + 6_755_399_441_055_744.0).to_bits() as i32
     }
 }
 
@@ -105,6 +107,26 @@ mod tests {
             (0.500_001, 1),
         ] {
             assert_eq!(bits.snap(x / 256.0), snapped, "{x} sub-pixels");
+        }
+    }
+
+    #[test]
+    fn a_snap_is_the_rounding_of_the_standard_library_anywhere_in_the_guard_band() {
+        for bits in [SubpixelBits::Eight, SubpixelBits::Sixteen] {
+            let mut state = 1_u64;
+            for _ in 0..200_000 {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1);
+                let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
+                let x = (share * 2.0 - 1.0) * (bits.guard_band() + 1.0);
+                // Also on and next to a tie.
+                let tie = ((x * f64::from(bits.scale())).floor() + 0.5) / f64::from(bits.scale());
+                for x in [x, tie, tie.next_up(), tie.next_down()] {
+                    let expected = (x * f64::from(bits.scale())).round_ties_even() as i32;
+                    assert_eq!(bits.snap(x), expected, "{x}");
+                }
+            }
         }
     }
 

@@ -22,6 +22,12 @@ impl Setup {
         }
     }
 
+    /// True where the triangle covers the centre of a pixel.
+    #[inline]
+    pub(super) fn covers(&self, x: i32, y: i32) -> bool {
+        self.edges.iter().all(|e| e.at(x, y) >= e.bias)
+    }
+
     /// Tests every pixel of the box.
     #[inline]
     pub(super) fn half_space(&self, bounds: Region, mut visit: impl FnMut(i32, i32, u32)) {

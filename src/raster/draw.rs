@@ -1,18 +1,12 @@
 //! Whole pictures: every pixel is the minimum over `(depth, id)` of the triangles that cover it.
 //!
-//! The minimum is commutative and associative, so chunks of triangles can be drawn on their own and merged: neither
-//! the number of threads nor the order of triangles changes a bit.
+//! The z-buffer finds the triangles; then only those that are seen are shaded, each where it is seen.
 
-use rayon::prelude::*;
-
-use super::{Paint, Pieces, Plane, Projector, Scene, ScreenVertex, Setup, Shader};
-use crate::view::{View, ViewSet};
-
-/// The key of a sample that nothing covers: behind everything.
-pub(super) const EMPTY: u64 = u64::MAX;
-
-/// Triangles below which a picture is not worth splitting into chunks.
-const CHUNK: usize = 32_768;
+use super::{
+    FaceGeometry, Paint, Plane, Projector, Scene, Setup, Shader,
+    zbuffer::{EMPTY, ZBuffer},
+};
+use crate::view::{Interpolation, View, ViewSet};
 
 /// A picture of one view, at sample resolution.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,138 +19,178 @@ pub struct Picture<T> {
     pub dropped: u64,
 }
 
-/// What a picture stores of a paint: nothing, luma, or red, green and blue.
-trait Tone: Copy + Send + Sync {
-    fn of(paint: &Paint, setup: &Setup, x: i32, y: i32) -> Self;
-}
-
-impl Tone for () {
-    #[inline]
-    fn of(_: &Paint, _: &Setup, _: i32, _: i32) -> Self {}
-}
-
-impl Tone for u8 {
-    #[inline]
-    fn of(paint: &Paint, setup: &Setup, x: i32, y: i32) -> Self {
-        paint.luma(setup, x, y)
-    }
-}
-
-impl Tone for [u8; 3] {
-    #[inline]
-    fn of(paint: &Paint, setup: &Setup, x: i32, y: i32) -> Self {
-        paint.rgb(setup, x, y)
-    }
-}
-
-fn draw<T: Tone>(scene: &Scene, view: &View, set: &ViewSet, background: T) -> Picture<T> {
-    let projector = Projector::new(view, set);
-    let screen = scene.project(&projector);
-    let intensities = scene.intensities(view);
-    let shader = Shader::new(view);
-    let count = scene.triangle_count();
-    let chunks = count
-        .div_ceil(CHUNK)
-        .min(rayon::current_num_threads())
-        .max(1);
-    let part = |chunk: usize| {
-        let range = chunk * count / chunks..(chunk + 1) * count / chunks;
-        draw_range(
-            scene,
-            view,
-            &projector,
-            (&screen, &intensities, &shader),
-            range,
-            background,
-        )
-    };
-    if chunks == 1 {
-        return part(0);
-    }
-    let mut parts = (0..chunks)
-        .into_par_iter()
-        .map(part)
-        .collect::<Vec<_>>()
-        .into_iter();
-    let mut picture = parts.next().expect("at least one chunk");
-    for other in parts {
-        picture.dropped += other.dropped;
-        let tones = picture
-            .tones
-            .values_mut()
-            .iter_mut()
-            .zip(other.tones.values());
-        for ((key, &k), (tone, &t)) in picture
-            .keys
-            .values_mut()
-            .iter_mut()
-            .zip(other.keys.values())
-            .zip(tones)
-        {
-            if k < *key {
-                *key = k;
-                *tone = t;
-            }
-        }
-    }
-    picture
-}
-
-fn draw_range<T: Tone>(
+fn draw<T: Copy>(
     scene: &Scene,
     view: &View,
-    projector: &Projector,
-    (screen, intensities, shader): (&[ScreenVertex], &[f64], &Shader),
-    triangles: std::ops::Range<usize>,
-    background: T,
+    set: &ViewSet,
+    tones: impl FnOnce(&Plane<u64>) -> Plane<T>,
 ) -> Picture<T> {
-    let image = projector.image();
-    let (width, height) = (image.x1 as u32, image.y1 as u32);
-    let mut keys = Plane::filled(width, height, EMPTY);
-    let mut tones = Plane::filled(width, height, background);
-    let mut dropped = 0;
-    for t in triangles {
-        let id = u64::from(scene.id(t));
-        let drawn = scene.face(t, shader, screen, intensities).pieces(
-            projector,
-            view.cull,
-            |setup, paint| {
-                let (keys, tones) = (keys.values_mut(), tones.values_mut());
-                setup.fragments(image, |x, y, depth| {
-                    let at = y as usize * width as usize + x as usize;
-                    let key = u64::from(depth) << 32 | id;
-                    if key < keys[at] {
-                        keys[at] = key;
-                        tones[at] = T::of(paint, setup, x, y);
-                    }
-                });
-            },
-        );
-        dropped += u64::from(drawn == Pieces::Dropped);
-    }
+    let mut buffer = ZBuffer::new(rayon::current_num_threads());
+    buffer.draw(scene, view, set);
+    let dropped = buffer.dropped();
+    let keys = buffer.into_keys();
     Picture {
+        tones: tones(&keys),
         keys,
-        tones,
         dropped,
     }
 }
 
-/// Which triangle is nearest at every sample, and how deep: see [`Picture::keys`].
+/// What the shading of one picture remembers between samples.
+struct Shading<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    projector: Projector,
+    shader: Shader,
+    /// Gouraud shading: the intensity of every vertex that was needed, else NaN.
+    intensities: Vec<f64>,
+    /// The triangle whose pieces are at hand.
+    id: Option<u32>,
+    pieces: Vec<(Setup, Paint)>,
+}
+
+impl<'a> Shading<'a> {
+    fn new(scene: &'a Scene, view: &'a View, set: &ViewSet) -> Self {
+        let gouraud = view.shading.interpolation == Interpolation::Gouraud;
+        let vertices = if gouraud { scene.positions().len() } else { 0 };
+        Self {
+            scene,
+            view,
+            projector: Projector::new(view, set),
+            shader: Shader::new(view),
+            intensities: vec![f64::NAN; vertices],
+            id: None,
+            pieces: Vec::new(),
+        }
+    }
+
+    /// The paint of a whole triangle.
+    fn paint(&mut self, t: usize) -> Paint {
+        let scene = self.scene;
+        let colors = scene.corner_colors(t);
+        if self.intensities.is_empty() {
+            let g = FaceGeometry::new(scene.points(t));
+            return Paint::flat(self.shader.intensity(g.centroid, g.normal), colors);
+        }
+        let corners = scene.triangles()[t].map(|v| {
+            let v = v as usize;
+            if self.intensities[v].is_nan() {
+                let (point, normal) = (scene.positions()[v], scene.normals()[v]);
+                self.intensities[v] = self.shader.intensity(point, normal);
+            }
+            self.intensities[v]
+        });
+        Paint::gouraud(corners, colors)
+    }
+
+    /// What `tone` makes of the piece that the sample shows, or `background`.
+    fn tone<T: Copy>(
+        &mut self,
+        key: u64,
+        (x, y): (i32, i32),
+        background: T,
+        tone: impl Fn(&Paint, &Setup, i32, i32) -> T,
+    ) -> T {
+        let id = key as u32;
+        if key == EMPTY {
+            return background;
+        }
+        if self.id != Some(id) {
+            self.id = Some(id);
+            self.pieces.clear();
+            if let Some(t) = self.scene.triangle_of(id) {
+                let paint = self.paint(t);
+                let face = self.scene.painted(t, &self.projector, paint);
+                let pieces = &mut self.pieces;
+                face.pieces(&self.projector, self.view.cull, |setup, paint| {
+                    pieces.push((*setup, *paint));
+                });
+            }
+        }
+        // A triangle that had to be clipped covers the sample with one of its pieces.
+        let shown = match self.pieces.as_slice() {
+            [only] => Some(only),
+            several => several.iter().find(|(setup, _)| setup.covers(x, y)),
+        };
+        shown.map_or(background, |(setup, paint)| tone(paint, setup, x, y))
+    }
+
+    /// Every sample of a picture with these keys.
+    fn plane<T: Copy>(
+        mut self,
+        keys: &Plane<u64>,
+        background: T,
+        tone: impl Fn(&Paint, &Setup, i32, i32) -> T,
+    ) -> Plane<T> {
+        let mut tones = Plane::filled(keys.width(), keys.height(), background);
+        let width = keys.width() as usize;
+        let rows = keys.values().chunks_exact(width.max(1));
+        for (y, (keys, row)) in rows
+            .zip(tones.values_mut().chunks_exact_mut(width.max(1)))
+            .enumerate()
+        {
+            for (x, (&key, value)) in keys.iter().zip(row).enumerate() {
+                *value = self.tone(key, (x as i32, y as i32), background, &tone);
+            }
+        }
+        tones
+    }
+
+    /// True where every triangle has one level.
+    fn is_flat_white(&self) -> bool {
+        self.intensities.is_empty() && self.scene.colors().is_empty()
+    }
+
+    /// As [`Shading::plane`] for levels, where every triangle has one.
+    fn levels(mut self, keys: &Plane<u64>, background: u8) -> Plane<u8> {
+        const UNKNOWN: u16 = u16::MAX;
+        let mut levels = vec![UNKNOWN; self.scene.triangle_count()];
+        keys.map(|key| {
+            let shown = (key != EMPTY).then(|| self.scene.triangle_of(key as u32));
+            let Some(t) = shown.flatten() else {
+                return background;
+            };
+            if levels[t] == UNKNOWN
+                && let Paint::Flat(level) = self.paint(t)
+            {
+                levels[t] = u16::from(level);
+            }
+            levels[t] as u8
+        })
+    }
+}
+
+/// Which triangle is nearest at every sample, and how deep: see [`Picture::keys`]. Where many pictures are drawn, a
+/// [`ZBuffer`] does the same and keeps its memory.
 #[must_use]
 pub fn keys(scene: &Scene, view: &View, set: &ViewSet) -> Picture<()> {
-    draw(scene, view, set, ())
+    draw(scene, view, set, |keys| keys.map(|_| ()))
 }
 
 /// Luma at every sample, 0 to 255; the set's background where nothing is.
 #[must_use]
 pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
-    draw(scene, view, set, set.background)
+    draw(scene, view, set, |keys| {
+        let shading = Shading::new(scene, view, set);
+        if shading.is_flat_white() {
+            shading.levels(keys, set.background)
+        } else {
+            shading.plane(keys, set.background, Paint::luma)
+        }
+    })
 }
 
 /// Red, green and blue at every sample; a grey of the set's background where nothing is.
 #[must_use]
 pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
-    draw(scene, view, set, [set.background; 3])
+    draw(scene, view, set, |keys| {
+        let shading = Shading::new(scene, view, set);
+        if shading.is_flat_white() {
+            shading.levels(keys, set.background).map(|v| [v; 3])
+        } else {
+            shading.plane(keys, [set.background; 3], Paint::rgb)
+        }
+    })
 }
 
 /// Triangle ids of a picture: id + 1, and 0 for the background.

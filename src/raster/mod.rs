@@ -24,6 +24,7 @@ mod scene;
 mod setup;
 mod shade;
 mod unrender;
+mod zbuffer;
 
 pub use draw::{Picture, coverage, depths, ids, keys, luma, rgb};
 pub use face::{Face, Pieces};
@@ -37,3 +38,4 @@ pub use scene::Scene;
 pub use setup::Setup;
 pub use shade::{FaceGeometry, Shader};
 pub use unrender::{Added, Change, Model, Unrender, Weigh};
+pub use zbuffer::ZBuffer;

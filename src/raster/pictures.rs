@@ -6,7 +6,7 @@ use super::{
     Added, Change, Face, FaceGeometry, Model, Paint, Plane, Projector, Region, ScreenVertex, Setup,
     Shader,
     buckets::{Buckets, Stamps},
-    draw::EMPTY,
+    zbuffer::EMPTY,
 };
 use crate::{
     num::fixed::level,

@@ -47,6 +47,23 @@ impl ScreenVertex {
     }
 }
 
+/// What coverage and depth need of a [`ScreenVertex`], in half the bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ScreenPoint {
+    pub(super) x: i32,
+    pub(super) y: i32,
+    pub(super) depth: u32,
+}
+
+impl ScreenPoint {
+    /// See [`ScreenVertex::OUTSIDE`].
+    pub(super) const OUTSIDE: Self = Self {
+        x: i32::MIN,
+        y: i32::MIN,
+        depth: 0,
+    };
+}
+
 /// The transform of one view for one image size.
 #[derive(Clone, Debug)]
 pub struct Projector {
@@ -114,6 +131,28 @@ impl Projector {
     #[inline]
     #[must_use]
     pub fn screen(&self, p: DVec3) -> ScreenVertex {
+        match self.unclipped(p) {
+            Some((v, x, y)) => self.snap(v, x, y),
+            None => ScreenVertex::OUTSIDE,
+        }
+    }
+
+    /// As [`Projector::screen`], without the attribute weight.
+    #[inline]
+    pub(super) fn point(&self, p: DVec3) -> ScreenPoint {
+        match self.unclipped(p) {
+            Some((v, x, y)) => ScreenPoint {
+                x: self.bits.snap(x),
+                y: self.bits.snap(y),
+                depth: depth(v.c[2] / v.c[3]),
+            },
+            None => ScreenPoint::OUTSIDE,
+        }
+    }
+
+    /// Clip space and pixels of a point that needs no clipping.
+    #[inline]
+    fn unclipped(&self, p: DVec3) -> Option<(ClipVertex, f64, f64)> {
         let v = self.clip(p);
         let [_, _, z, w] = v.c;
         let (x, y) = self.viewport(v);
@@ -127,9 +166,9 @@ impl Projector {
             && y >= -band
             && y <= band
         {
-            self.snap(v, x, y)
+            Some((v, x, y))
         } else {
-            ScreenVertex::OUTSIDE
+            None
         }
     }
 

@@ -1,12 +1,13 @@
 //! What is drawn: triangles with stable ids, their geometry, vertex normals and colours.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
-use super::{Face, FaceGeometry, Paint, Projector, ScreenVertex, Shader};
+use super::{Face, FaceGeometry, Paint, Projector};
 use crate::{
     mesh::{ChannelKind, Mesh},
     num::math::unit,
-    view::{Interpolation, View},
 };
 
 /// A mesh as the rasterizer sees it.
@@ -15,8 +16,10 @@ pub struct Scene {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     ids: Vec<u32>,
-    faces: Vec<FaceGeometry>,
-    normals: Vec<DVec3>,
+    /// The triangles by ascending id; empty where triangle t has the id t.
+    by_id: Vec<u32>,
+    /// Made when first asked for: pictures without Gouraud shading need none.
+    normals: OnceLock<Vec<DVec3>>,
     colors: Vec<[[f64; 3]; 3]>,
 }
 
@@ -52,36 +55,17 @@ impl Scene {
     #[must_use]
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, ids: Vec<u32>) -> Self {
         assert_eq!(ids.len(), triangles.len(), "an id for every triangle");
-        let faces: Vec<FaceGeometry> = triangles
-            .iter()
-            .map(|t| FaceGeometry::new(t.map(|v| positions[v as usize])))
-            .collect();
-        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        if !ids.is_sorted() {
-            order.sort_unstable_by_key(|&t| ids[t as usize]);
+        let mut by_id: Vec<u32> = Vec::new();
+        if ids.iter().zip(0..).any(|(&id, t)| id != t) {
+            by_id = (0..triangles.len() as u32).collect();
+            by_id.sort_by_key(|&t| ids[t as usize]);
         }
-        let mut sums = vec![DVec3::ZERO; positions.len()];
-        for t in order {
-            let [a, b, c] = triangles[t as usize];
-            let normal = faces[t as usize].area_normal;
-            sums[a as usize] += normal;
-            if b != a {
-                sums[b as usize] += normal;
-            }
-            if c != a && c != b {
-                sums[c as usize] += normal;
-            }
-        }
-        let normals = sums
-            .into_iter()
-            .map(|n| unit(n).unwrap_or(DVec3::ZERO))
-            .collect();
         Self {
             positions,
             triangles,
             ids,
-            faces,
-            normals,
+            by_id,
+            normals: OnceLock::new(),
             colors: Vec::new(),
         }
     }
@@ -129,57 +113,66 @@ impl Scene {
         self.ids[t]
     }
 
-    /// Unit vertex normals: the area-weighted sums of the normals around each vertex, zero where undefined.
+    /// The triangle with this id.
+    #[inline]
+    pub(super) fn triangle_of(&self, id: u32) -> Option<usize> {
+        if self.by_id.is_empty() {
+            return ((id as usize) < self.ids.len()).then_some(id as usize);
+        }
+        let rank = self
+            .by_id
+            .binary_search_by_key(&id, |&t| self.ids[t as usize]);
+        rank.ok().map(|rank| self.by_id[rank] as usize)
+    }
+
+    /// Unit vertex normals: the area-weighted sums of the normals around each vertex, zero where undefined. The first
+    /// call takes as long as a look at every triangle.
     #[must_use]
     pub fn normals(&self) -> &[DVec3] {
-        &self.normals
-    }
-
-    /// The intensity of every vertex in a view with Gouraud shading; empty for flat shading.
-    pub(super) fn intensities(&self, view: &View) -> Vec<f64> {
-        match view.shading.interpolation {
-            Interpolation::Flat => Vec::new(),
-            Interpolation::Gouraud => {
-                let shader = Shader::new(view);
-                self.positions
-                    .iter()
-                    .zip(&self.normals)
-                    .map(|(&p, &n)| shader.intensity(p, n))
-                    .collect()
+        self.normals.get_or_init(|| {
+            let mut sums = vec![DVec3::ZERO; self.positions.len()];
+            let mut add = |t: usize| {
+                let [a, b, c] = self.triangles[t];
+                let normal = FaceGeometry::new(self.points(t)).area_normal;
+                sums[a as usize] += normal;
+                if b != a {
+                    sums[b as usize] += normal;
+                }
+                if c != a && c != b {
+                    sums[c as usize] += normal;
+                }
+            };
+            if self.by_id.is_empty() {
+                (0..self.triangles.len()).for_each(&mut add);
+            } else {
+                self.by_id.iter().for_each(|&t| add(t as usize));
             }
-        }
+            sums.into_iter()
+                .map(|n| unit(n).unwrap_or(DVec3::ZERO))
+                .collect()
+        })
     }
 
-    /// Triangle `t` of a view: `screen` are the projected vertices, `intensities` as [`Scene::intensities`] gives
-    /// them.
+    /// The corners of a triangle.
     #[inline]
-    pub(super) fn face(
-        &self,
-        t: usize,
-        shader: &Shader,
-        screen: &[ScreenVertex],
-        intensities: &[f64],
-    ) -> Face {
-        let corners = self.triangles[t];
-        let color = self.colors.get(t);
-        let paint = if intensities.is_empty() {
-            let g = &self.faces[t];
-            Paint::flat(shader.intensity(g.centroid, g.normal), color)
-        } else {
-            Paint::gouraud(corners.map(|v| intensities[v as usize]), color)
-        };
+    pub(super) fn points(&self, t: usize) -> [DVec3; 3] {
+        self.triangles[t].map(|v| self.positions[v as usize])
+    }
+
+    /// A triangle of a view with the given paint.
+    #[inline]
+    pub(super) fn painted(&self, t: usize, projector: &Projector, paint: Paint) -> Face {
+        let positions = self.points(t);
         Face {
-            positions: corners.map(|v| self.positions[v as usize]),
-            screen: corners.map(|v| screen[v as usize]),
+            positions,
+            screen: positions.map(|p| projector.screen(p)),
             paint,
         }
     }
 
-    /// Every vertex on the screen.
-    pub(super) fn project(&self, projector: &Projector) -> Vec<ScreenVertex> {
-        self.positions
-            .iter()
-            .map(|&p| projector.screen(p))
-            .collect()
+    /// The corner colours of a triangle; `None` where everything is white.
+    #[inline]
+    pub(super) fn corner_colors(&self, t: usize) -> Option<&[[f64; 3]; 3]> {
+        self.colors.get(t)
     }
 }

@@ -1,3 +1,28 @@
-//! Visibility: what the views see of a mesh, and the proof by ray casting that the images say so rightly.
+//! Visibility: how much of every triangle an observer far away can see (Zhang & Turk 2002).
+//!
+//! Orthographic [`cameras`](Options::octahedron) all around the mesh draw ID buffers. F(t, v) says whether view v sees
+//! triangle t; the measure V(t) of equation 4.3 is the share of the views in front of t that see it, head-on views
+//! counting most; V(M) of equation 3.2 is its mean over the surface. [`measure`] does all of it. A [`Survey`] holds what
+//! some of the views have seen, as integers, so that views can be spread over machines and put together in any
+//! order.
+//!
+//! Two sets of [`Options`]: the default corrects what the paper leaves to chance, [`Options::paper`] follows it to the
+//! letter. Deviations are told where they are made.
+//!
+//! [`rays`] proves the ID buffers right by ray casting.
 
+mod cameras;
+mod counts;
+mod measure;
+mod options;
+mod picture;
 pub mod rays;
+mod sight;
+mod subdivide;
+mod survey;
+mod survey_file;
+mod unseen;
+
+pub use measure::{Visibility, measure};
+pub use options::{Alignment, CameraWeights, Options, UnseenRule};
+pub use survey::Survey;

@@ -26,6 +26,7 @@ mod shapes;
 mod streams;
 mod unrender;
 mod view;
+mod zbuffer;
 
 /// A property test of so many cases that writes nothing into the source tree when it fails.
 fn cases(count: u32) -> proptest::test_runner::Config {

@@ -1,0 +1,159 @@
+//! What some of the views have seen: a result in parts that can be put together in any order.
+
+use std::ops::Range;
+
+use super::{
+    Options, Visibility,
+    counts::{Counts, count},
+};
+use crate::{
+    Error, Progress, Result,
+    mesh::{Mesh, content_digest},
+};
+
+/// What some of the views of a measurement have seen of one mesh: sums of integers.
+///
+/// Surveys of the same mesh with the same options and different views add up, in any order and any split, to the same
+/// bytes as a survey of all views. A complete one holds everything that V(t) is computed from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Version of the crate that counted.
+    pub(super) version: String,
+    /// [`content_digest`] of the mesh.
+    pub(super) digest: [u8; 32],
+    pub(super) options: Options,
+    /// The views that were counted: ascending, apart from each other.
+    pub(super) ranges: Vec<Range<u32>>,
+    pub(super) counts: Counts,
+}
+
+impl Survey {
+    /// Counts what the views of `range` see of `mesh`; the first camera is 0. O(views x (triangles + pixels)).
+    ///
+    /// # Errors
+    /// As [`measure`](super::measure); [`Error::Usage`] also where the range is empty or ends beyond the last camera.
+    pub fn of_views(
+        mesh: &Mesh,
+        options: &Options,
+        range: Range<u32>,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let counts = count(mesh, options, range.clone(), progress)?;
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            digest: content_digest(mesh),
+            options: *options,
+            ranges: vec![range],
+            counts,
+        })
+    }
+
+    /// What it was counted with.
+    #[must_use]
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The views that were counted, ascending and apart from each other.
+    #[must_use]
+    pub fn views(&self) -> &[Range<u32>] {
+        &self.ranges
+    }
+
+    /// Number of triangles of its mesh.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.counts.views.len()
+    }
+
+    /// True where every view was counted.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.ranges == [0..self.options.cameras()]
+    }
+
+    /// Adds the views of another survey.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the two are of other meshes, options or versions of this crate, or have a view in
+    /// common; this survey is then unchanged.
+    pub fn merge(&mut self, other: &Self) -> Result<()> {
+        let refused = |what: &str, expected: &str| {
+            Err(Error::Usage(format!(
+                "the surveys {what}; expected {expected}"
+            )))
+        };
+        if self.digest != other.digest || self.triangle_count() != other.triangle_count() {
+            return refused(
+                "belong to different meshes",
+                "parts of one measurement: the same file, read the same way",
+            );
+        }
+        if self.options != other.options {
+            return refused(
+                "were counted with different options",
+                "the same cameras, size and rules in every part",
+            );
+        }
+        if self.version != other.version {
+            let versions = format!("come from versions {} and {}", self.version, other.version);
+            return refused(
+                &versions,
+                "one version, because another may count otherwise",
+            );
+        }
+        for a in &self.ranges {
+            if let Some(b) = other
+                .ranges
+                .iter()
+                .find(|b| a.start < b.end && b.start < a.end)
+            {
+                let both = format!(
+                    "have views {}..{} in common",
+                    a.start.max(b.start),
+                    a.end.min(b.end)
+                );
+                return refused(&both, "every view in one part only");
+            }
+        }
+        self.counts.merge(&other.counts);
+        self.ranges.extend(other.ranges.iter().cloned());
+        self.ranges.sort_unstable_by_key(|r| r.start);
+        let mut united: Vec<Range<u32>> = Vec::with_capacity(self.ranges.len());
+        for range in self.ranges.drain(..) {
+            match united.last_mut() {
+                Some(last) if last.end == range.start => last.end = range.end,
+                _ => united.push(range),
+            }
+        }
+        self.ranges = united;
+        Ok(())
+    }
+
+    /// V(t) and V(M) of `mesh`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where it is another mesh than the one that was counted, or a view is missing.
+    pub fn finish(&self, mesh: &Mesh) -> Result<Visibility> {
+        if self.triangle_count() != mesh.triangles().len() || self.digest != content_digest(mesh) {
+            return Err(Error::Usage(format!(
+                "the survey belongs to another mesh, of {} triangles, than the one of {}; measure this mesh, or give \
+                 the file that was measured",
+                self.triangle_count(),
+                mesh.triangles().len()
+            )));
+        }
+        if !self.is_complete() {
+            let present = self
+                .ranges
+                .iter()
+                .map(|r| format!("{}..{}", r.start, r.end));
+            return Err(Error::Usage(format!(
+                "the survey has views {} of 0..{}; expected all of them: merge the missing parts first",
+                present.collect::<Vec<_>>().join(", "),
+                self.options.cameras()
+            )));
+        }
+        Visibility::of(mesh, &self.options, self.counts.clone())
+    }
+}
