@@ -5,6 +5,7 @@ mod architecture;
 mod cli;
 mod collapse;
 mod compare;
+mod embree;
 mod findings;
 mod generate;
 mod golden;

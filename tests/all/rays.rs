@@ -289,11 +289,14 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Plane<u64> {
             _ => t as u64,
         };
         for (at, key) in keys.values_mut().iter_mut().enumerate() {
-            let (x, y) = (
-                at as i128 % i128::from(set.width),
-                at as i128 / i128::from(set.width),
-            );
-            let p = [x, y, 0].map(|v| (2 * v + 1) << (bits - 1));
+            let (x, y) = (at % set.width as usize, at / set.width as usize);
+            let p = [x, y, 0].map(|v| (2 * v as i128 + 1) << (bits - 1));
+            let beside = |i: usize| {
+                corners.iter().all(|v| v[i] < p[i]) || corners.iter().all(|v| v[i] > p[i])
+            };
+            if beside(0) || beside(1) {
+                continue;
+            }
             let weights = [cross(p, b, c), cross(a, p, c), cross(a, b, p)];
             let covers = [[b, c], [c, a], [a, b]]
                 .iter()
