@@ -83,6 +83,9 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         .ok_or_else(|| Error::Internal("a mesh with triangles has a bounding sphere".into()))?;
     let set = options.set(&sphere)?.enter_frame(frame);
     let cap = options.cap.unwrap_or(cap(set.subpixel));
+    if options.picture.is_some() {
+        require_sheet(&set)?;
+    }
     let mesh = mesh.enter_frame(frame);
     let (scene, caster) = (Scene::of(&mesh), RayCaster::new(&mesh));
     let mut tally = Tally::default();
@@ -217,7 +220,32 @@ fn colored(view: &Classified) -> Plane<[u8; 3]> {
     picture
 }
 
-/// All views side by side, as square as they come.
+/// Columns of a sheet that is as square as it comes.
+fn columns(views: usize) -> usize {
+    let mut columns = 1;
+    while columns * columns < views {
+        columns += 1;
+    }
+    columns
+}
+
+/// Refuses a sheet that no picture holds: before long work, not after it.
+fn require_sheet(set: &ViewSet) -> Result<()> {
+    let side = u64::from((set.width * set.samples).max(set.height * set.samples));
+    let columns = columns(set.views.len()) as u64;
+    // Space for labels and between pictures.
+    if columns * (side + 24) + 8 > u64::from(png::SIDE_LIMIT) {
+        return Err(Error::Usage(format!(
+            "a sheet of {} views of {side} samples is larger than {} per side: use fewer or smaller views, or no \
+             --picture",
+            set.views.len(),
+            png::SIDE_LIMIT
+        )));
+    }
+    Ok(())
+}
+
+/// All views side by side.
 fn contact_sheet(pictures: &[Plane<[u8; 3]>]) -> Result<Plane<[u8; 3]>> {
     let labels: Vec<String> = (0..pictures.len()).map(|i| format!("view {i}")).collect();
     let tiles: Vec<_> = pictures
@@ -225,9 +253,5 @@ fn contact_sheet(pictures: &[Plane<[u8; 3]>]) -> Result<Plane<[u8; 3]>> {
         .zip(&labels)
         .map(|(picture, label)| sheet::Tile { picture, label })
         .collect();
-    let mut columns = 1;
-    while columns * columns < tiles.len() {
-        columns += 1;
-    }
-    sheet::sheet(&tiles, columns as u32, sheet::Style::default())
+    sheet::sheet(&tiles, columns(tiles.len()) as u32, sheet::Style::default())
 }

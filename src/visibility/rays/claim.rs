@@ -25,14 +25,13 @@ pub(super) enum Fault {
     Occluded,
 }
 
-/// One pixel with everything that is certainly there.
+/// One pixel.
 pub(super) struct Pixel<'a> {
     caster: &'a RayCaster,
     rays: &'a Rays<'a>,
     ray: Ray,
     cull: Cull,
-    /// The greatest depth that a triangle certainly has here, over triangles that certainly cover the centre: the least.
-    certain: Option<f64>,
+    at: [i64; 2],
 }
 
 impl<'a> Pixel<'a> {
@@ -42,17 +41,30 @@ impl<'a> Pixel<'a> {
         cull: Cull,
         [x, y]: [i64; 2],
     ) -> Self {
-        let ray = rays.ray(x, y);
-        let planes = [(0, x), (1, rays.size[1] - 1 - y)]
-            .map(|(axis, i)| rays.plane(axis, i, &caster.hierarchy));
-        let mut certain: Option<f64> = None;
+        Self {
+            caster,
+            rays,
+            ray: rays.ray(x, y),
+            cull,
+            at: [x, y],
+        }
+    }
+
+    /// The depth behind which nothing shows: of the triangles that certainly cover the centre, the least of the greatest
+    /// depths that each may have here.
+    fn certain(&self) -> Option<f64> {
+        let [x, y] = self.at;
+        // Rows count downwards, planes upwards.
+        let planes = [(0, x), (1, self.rays.size[1] - 1 - y)]
+            .map(|(axis, i)| self.rays.plane(axis, i, &self.caster.hierarchy));
         let line = line(planes[0], planes[1]);
-        caster.hierarchy.candidates(line.as_ref(), |t| {
-            let triangle = caster.triangles[t as usize];
-            if rays.hit(ray, triangle).is_none() {
+        let mut certain: Option<f64> = None;
+        self.caster.hierarchy.candidates(line.as_ref(), |t| {
+            let triangle = self.caster.triangles[t as usize];
+            if self.rays.hit(self.ray, triangle).is_none() {
                 return;
             }
-            let outline = Outline::new(rays, ray, triangle);
+            let outline = Outline::new(self.rays, self.ray, triangle);
             if outline.distance > TOLERANCE {
                 let [_, high] = outline.depths(TOLERANCE);
                 if certain.is_none_or(|least| high < least) {
@@ -60,13 +72,7 @@ impl<'a> Pixel<'a> {
                 }
             }
         });
-        Self {
-            caster,
-            rays,
-            ray,
-            cull,
-            certain,
-        }
+        certain
     }
 
     /// The outline of a triangle around the pixel; `None` where there is no such triangle.
@@ -78,7 +84,7 @@ impl<'a> Pixel<'a> {
     /// Whether the picture may show this triangle, or nothing.
     pub(super) fn check(&self, claim: Option<u32>) -> Result<(), Fault> {
         let Some(id) = claim else {
-            return self.certain.map_or(Ok(()), |_| Err(Fault::Hole));
+            return self.certain().map_or(Ok(()), |_| Err(Fault::Hole));
         };
         let outline = self.outline(id).ok_or(Fault::Range)?;
         let seen = outline.height <= TOLERANCE || self.faces(id);
@@ -86,7 +92,7 @@ impl<'a> Pixel<'a> {
             return Err(Fault::Stray);
         }
         let [low, _] = outline.depths(TOLERANCE);
-        match self.certain {
+        match self.certain() {
             Some(high) if high + QUANTA < low => Err(Fault::Occluded),
             _ => Ok(()),
         }
