@@ -53,7 +53,7 @@
 //! | [`view`] | cameras, the minimum bounding sphere, view sets and view files |
 //! | [`raster`] | clip, snap, spans, depth, ids, shading; un-rendering |
 //! | [`metric`] | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
-//! | [`visibility`] | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts |
+//! | [`visibility`] | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts; the proof of ID buffers by ray casting |
 //! | [`collapse`] | one engine for every method: live mesh, queue, legality, wedges, history and replay |
 //! | [`simplify`] | the methods, their options and outcomes |
 //! | [`output`] | PNG, npy, JSON, contact sheets, goldens |

@@ -9,6 +9,7 @@ macro_rules! answer {
 
 mod answers;
 mod check;
+mod check_rays;
 mod compare;
 mod demo;
 mod golden;
@@ -74,6 +75,7 @@ enum Command {
     Visibility(visibility::Options),
     MergeVisibility(visibility::MergeOptions),
     Check(check::Options),
+    CheckRays(check_rays::Options),
     Inspect(inspect::Options),
     Levels(levels::Options),
     Golden(golden::Options),
@@ -85,7 +87,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["check-rays", "bound", "verify", "lod"];
+const NOT_BUILT: &[&str] = &["bound", "verify", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,6 +146,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Visibility(options) => visibility::run(&options, common, &terminal),
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
+        Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Levels(options) => levels::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),

@@ -8,6 +8,8 @@
 //!
 //! Two sets of [`Options`]: the default corrects what the paper leaves to chance, [`Options::paper`] follows it to the
 //! letter. Deviations are told where they are made.
+//!
+//! [`rays`] proves the ID buffers right by ray casting.
 
 mod cameras;
 mod color;
@@ -16,6 +18,8 @@ mod counts;
 mod hidden;
 mod measure;
 mod options;
+mod picture;
+pub mod rays;
 mod sight;
 mod subdivide;
 mod survey;

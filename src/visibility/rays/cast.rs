@@ -1,0 +1,157 @@
+//! ID buffers by ray casting.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{
+    hierarchy::Hierarchy,
+    intersect::{Rays, line},
+};
+use crate::{
+    Progress, Result,
+    mesh::Mesh,
+    raster::Plane,
+    view::{View, ViewSet},
+};
+
+/// The key of a sample that nothing covers.
+pub(super) const EMPTY: u64 = u64::MAX;
+/// Rows between two looks at the interrupt key.
+const ROWS: u32 = 64;
+
+/// Casts the rays of any view against one mesh.
+pub struct RayCaster {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) hierarchy: Hierarchy,
+}
+
+impl RayCaster {
+    /// Takes the positions as they are and builds the hierarchy; O(n log n), on one thread.
+    #[must_use]
+    pub fn new(mesh: &Mesh) -> Self {
+        Self {
+            positions: mesh.positions().to_vec(),
+            triangles: mesh.triangles().to_vec(),
+            hierarchy: Hierarchy::new(mesh.positions(), mesh.triangles()),
+        }
+    }
+
+    /// What the ray through the centre of every sample hits first: `depth << 32 | triangle`, and `u64::MAX` for nothing,
+    /// as [`raster::keys`](crate::raster::keys) has it; depth is `floor(z/w 2^32)` of the exact hit, and of equal depths
+    /// the lowest triangle is taken. `view` and `set` are in the units of the mesh.
+    ///
+    /// Exact: the hierarchy chooses which triangles are tested, never what is hit. 3 microseconds per ray for 69,451 triangles, 8 for
+    /// 871,414, of one core.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted).
+    pub fn keys(&self, view: &View, set: &ViewSet, progress: &dyn Progress) -> Result<Plane<u64>> {
+        let rays = Rays::new(view, set, &self.positions);
+        let (width, height) = (set.width * set.samples, set.height * set.samples);
+        let planes = [0, 1].map(|axis| rays.planes(axis, &self.hierarchy));
+        let mut keys = Plane::filled(width, height, EMPTY);
+        let chunk = (ROWS * width).max(1) as usize;
+        for (i, rows) in keys.values_mut().chunks_mut(chunk).enumerate() {
+            if progress.interrupted() {
+                return Err(crate::Error::Interrupted);
+            }
+            let first = i as u32 * ROWS;
+            rows.par_chunks_mut(width.max(1) as usize)
+                .zip(first..height)
+                .for_each(|(row, y)| {
+                    for (key, x) in row.iter_mut().zip(0..width) {
+                        let ray = rays.ray(i64::from(x), i64::from(y));
+                        let line = line(
+                            planes[0][x as usize],
+                            // Rows count downwards, planes upwards.
+                            planes[1][(height - 1 - y) as usize],
+                        );
+                        self.hierarchy.candidates(line.as_ref(), |t| {
+                            if let Some(hit) = rays.hit(ray, self.triangles[t as usize]) {
+                                *key = (*key).min(u64::from(hit.depth) << 32 | u64::from(t));
+                            }
+                        });
+                    }
+                });
+        }
+        Ok(keys)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        Silent,
+        num::fixed::SubpixelBits,
+        view::{Projection, Sphere},
+    };
+
+    /// Points anywhere, on a coarse grid (boxes without thickness, rays through corners), or all in one plane.
+    fn mesh() -> impl Strategy<Value = Mesh> {
+        let coordinate = |flat: bool| {
+            if flat {
+                prop_oneof![Just(0.25_f64), Just(0.25)].boxed()
+            } else {
+                prop_oneof![-1.0..1.0_f64, (-2..3_i32).prop_map(|i| f64::from(i) * 0.5)].boxed()
+            }
+        };
+        let point = move |flat| (coordinate(false), coordinate(false), coordinate(flat));
+        // Where the mesh is: at the origin, or so far away that f32 knows no details.
+        let place = prop_oneof![Just(0.0), Just(65_536.0), Just(-3e6)];
+        (any::<bool>(), place).prop_flat_map(move |(flat, place)| {
+            proptest::collection::vec([point(flat), point(flat), point(flat)], 1..24).prop_map(
+                move |soup| {
+                    let place = DVec3::new(place, -place, place * 0.5);
+                    let corners = soup.into_iter().flatten();
+                    let positions: Vec<DVec3> = corners
+                        .map(|(x, y, z)| DVec3::new(x, y, z) + place)
+                        .collect();
+                    let triangles = (0..positions.len() as u32 / 3)
+                        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+                        .collect();
+                    Mesh::from_triangles(positions, triangles).expect("valid")
+                },
+            )
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+
+        #[test]
+        fn the_hierarchy_hides_no_triangle(
+            mesh in mesh(),
+            direction in prop_oneof![
+                [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
+                proptest::sample::select(vec![[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1e-9, 0.0]]),
+            ],
+            orthographic in any::<bool>(),
+        ) {
+            let direction = DVec3::from_array(direction);
+            prop_assume!(direction.length_squared() > 1e-3);
+            let projection =
+                if orthographic { Projection::Orthographic } else { Projection::Perspective };
+            let sphere = Sphere::of_mesh(&mesh).expect("triangles");
+            let set = ViewSet::around(&sphere, &[direction], 24, 16, projection)
+                .expect("views")
+                .with_subpixel(SubpixelBits::Sixteen);
+            let (caster, view) = (RayCaster::new(&mesh), &set.views[0]);
+            let keys = caster.keys(view, &set, &Silent).expect("not interrupted");
+            let rays = Rays::new(view, &set, mesh.positions());
+            for y in 0..16 {
+                for x in 0..24 {
+                    let ray = rays.ray(x, y);
+                    let hits = (0_u64..).zip(mesh.triangles()).filter_map(|(t, &triangle)| {
+                        Some(u64::from(rays.hit(ray, triangle)?.depth) << 32 | t)
+                    });
+                    prop_assert_eq!(keys.at(x as u32, y as u32), hits.min().unwrap_or(EMPTY));
+                }
+            }
+        }
+    }
+}
