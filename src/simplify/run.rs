@@ -10,7 +10,7 @@ use crate::{
     Error, Progress, Result,
     collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
-    raster::{BucketEngine, Model, Scene},
+    raster::{BucketEngine, Scene},
     view::frame_of,
 };
 
@@ -116,9 +116,7 @@ impl<'a> Run<'a> {
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
             let method =
-                ImageDriven::new(&original, &self.live, &set, own.placement, limit, |scene| {
-                    BucketEngine::new(Model::new(scene, &set), &set)
-                });
+                ImageDriven::<BucketEngine>::new(&original, &self.live, &set, own.placement, limit);
             // Where an error limits the run, pre-simplification must not use up more than half of it.
             let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
             if !too_far || self.phases.is_empty() {

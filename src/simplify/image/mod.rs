@@ -43,10 +43,7 @@ pub struct ImageScratch<S> {
 
 impl<E: Unrender> ImageDriven<E> {
     /// Prepares the pictures of `live` in the views of `set`, to be compared with those of `original` (in the same
-    /// frame). `build` makes the un-rendering engine. `rms_limit` ends the run before the root mean square of the
-    /// luma differences over all views exceeds it.
-    ///
-    /// Memory: the engine's, plus a byte per pixel and view.
+    /// frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
     pub fn new(
         original: &Scene,
@@ -54,11 +51,9 @@ impl<E: Unrender> ImageDriven<E> {
         set: &ViewSet,
         placement: MemorylessOptions,
         rms_limit: Option<f64>,
-        build: impl FnOnce(&Scene) -> E,
     ) -> Self {
         let (slots, scene) = change::Slots::of(live);
-        let error = ImageError::new(original, &scene, set, build(&scene));
-        let pixels = (set.views.len() as f64) * f64::from(set.width) * f64::from(set.height);
+        let error = ImageError::<E>::new(original, &scene, set);
         let scratch = ImageScratch {
             engine: error.scratch(),
             patch: Patch::default(),
@@ -69,7 +64,7 @@ impl<E: Unrender> ImageDriven<E> {
                 .views
                 .iter()
                 .any(|v| v.shading.interpolation == Interpolation::Gouraud),
-            limit: rms_limit.map(|rms| rms * rms * pixels),
+            limit: rms_limit.map(|rms| error.sum_of_rms(rms)),
             error,
             slots,
             placement,

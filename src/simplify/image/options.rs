@@ -13,7 +13,7 @@ use crate::{
     view::{self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName},
 };
 
-/// Most pixels of all driving images together; every one takes some ten bytes throughout the run.
+/// Most samples of all driving images together; every one takes some ten bytes throughout the run.
 const PIXEL_LIMIT: u64 = 1 << 27;
 
 /// Where the image-driven part of a run begins; the memoryless method gets there.
@@ -140,8 +140,7 @@ impl ImageOptions {
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
-    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel, and for more
-    /// pixels in all than 2^27.
+    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for more samples in all than 2^27.
     pub fn views(&self, original: &Mesh, frame: Frame) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
@@ -151,24 +150,19 @@ impl ImageOptions {
             [self.size; 2],
             Projection::Perspective,
         )?;
-        let pixels = set.views.len() as u64 * u64::from(set.width) * u64::from(set.height);
+        let samples = u64::from(set.samples * set.samples);
+        let pixels =
+            set.views.len() as u64 * u64::from(set.width) * u64::from(set.height) * samples;
         if pixels > PIXEL_LIMIT {
             return Err(Error::Unsupported(format!(
-                "{} driving images of {} x {} pixels do not fit into memory; expected at most {PIXEL_LIMIT} pixels in \
-                 all, so choose fewer or smaller images",
+                "{} driving images of {} x {} pixels with {samples} samples each do not fit into memory; expected at \
+                 most {PIXEL_LIMIT} samples in all, so choose fewer or smaller images",
                 set.views.len(),
                 set.width,
                 set.height
             )));
         }
-        if let ViewsName::File(path) = &self.views {
-            if set.samples != 1 {
-                return Err(Error::Unsupported(format!(
-                    "{} has {} samples per pixel; the driving images have 1",
-                    path.display(),
-                    set.samples
-                )));
-            }
+        if let ViewsName::File(_) = &self.views {
             return Ok(set.enter_frame(frame));
         }
         let shading = Shading {
