@@ -2,7 +2,7 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{ImageDriven, ImageOptions, Start},
+    image::{self, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
     memoryless::Memoryless,
     quadric::QuadricMethod,
 };
@@ -11,7 +11,7 @@ use crate::{
     collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
     raster::{BucketEngine, Model, Scene},
-    view::frame_of,
+    view::{ViewsName, frame_of},
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
@@ -56,6 +56,7 @@ struct Run<'a> {
     options: Options,
     recorder: Recorder,
     phases: Vec<Phase>,
+    polish: Option<PolishCounters>,
     error_rms: Option<f64>,
     progress: &'a dyn Progress,
 }
@@ -69,6 +70,7 @@ impl<'a> Run<'a> {
             options: options.clone(),
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
+            polish: None,
             error_rms: None,
             progress,
         }
@@ -101,8 +103,8 @@ impl<'a> Run<'a> {
     fn image(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
-        let set = own.views(&original, frame)?;
-        let original = Scene::of(&original);
+        let set = own.views(&original, frame, 0)?;
+        let scene = Scene::of(&original);
         let mut start = own.start.triangles(target.triangles);
         let method = loop {
             if self.live.triangle_count() > start {
@@ -116,7 +118,7 @@ impl<'a> Run<'a> {
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
             let method =
-                ImageDriven::new(&original, &self.live, &set, own.placement, limit, |scene| {
+                ImageDriven::new(&scene, &self.live, &set, own.placement, limit, |scene| {
                     BucketEngine::new(Model::new(scene, &set), &set)
                 });
             // Where an error limits the run, pre-simplification must not use up more than half of it.
@@ -137,7 +139,29 @@ impl<'a> Run<'a> {
             ..own.clone()
         });
         let (end, method) = self.phase("image", method, target)?;
-        self.error_rms = Some(method.error().rms());
+        let mut pictures = method.into_pictures();
+        if own.polish.sweeps > 0 {
+            // The limit is one for the views that the user was told.
+            let turns = self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
+            let mut fresh = |live: &LiveMesh, round: u32| {
+                let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
+                Some(Pictures::new(&scene, live, &set, |scene| {
+                    BucketEngine::new(Model::new(scene, &set), &set)
+                }))
+            };
+            let counters;
+            (pictures, counters) = image::polish(
+                &mut self.live,
+                pictures,
+                own.polish,
+                self.options.rules,
+                &mut fresh,
+                &mut self.recorder,
+                self.progress,
+            )?;
+            self.polish = Some(counters);
+        }
+        self.error_rms = Some(pictures.error().rms());
         Ok(end)
     }
 
@@ -153,6 +177,7 @@ impl<'a> Run<'a> {
             history: self.recorder.finish(json),
             stop,
             phases: self.phases,
+            polish: self.polish,
             options: self.options,
             error_rms: self.error_rms,
         })
