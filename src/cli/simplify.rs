@@ -52,6 +52,9 @@ pub(super) struct Options {
     /// Image method: width and height of the driving images [default: by preset]
     #[arg(long, value_name = "PIXELS")]
     size: Option<u32>,
+    /// Image method: samples per pixel along each axis of the driving images: 1, 2 or 4 [default: by preset]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
     /// Image method: the shading that the result will be seen with [default: flat]
     #[arg(long, value_enum)]
     shading: Option<ShadingName>,
@@ -254,6 +257,7 @@ impl Options {
         ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
             size: self.size.unwrap_or(default.size),
+            samples: self.samples.unwrap_or(default.samples),
             shading: match self.shading {
                 None => default.shading,
                 Some(ShadingName::Flat) => DrivingShading::Flat,
@@ -280,6 +284,7 @@ impl Options {
             ("--preset", self.preset.is_some()),
             ("--views", self.views.is_some()),
             ("--size", self.size.is_some()),
+            ("--samples", self.samples.is_some()),
             ("--shading", self.shading.is_some()),
             ("--interior-views", self.interior_views.is_some()),
             ("--start-triangles", self.start_triangles.is_some()),
@@ -306,10 +311,13 @@ impl Options {
             true,
         ) = (
             method,
-            self.size.is_some() || self.shading.is_some() || self.interior_views.is_some(),
+            self.size.is_some()
+                || self.samples.is_some()
+                || self.shading.is_some()
+                || self.interior_views.is_some(),
         ) {
             return Err(Error::Usage(format!(
-                "--size, --shading and --interior-views are part of the view file {}; leave them out",
+                "--size, --samples, --shading and --interior-views are part of the view file {}; leave them out",
                 path.display()
             )));
         }

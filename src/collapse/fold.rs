@@ -106,7 +106,10 @@ mod tests {
         assert_eq!(moved(&flat, DVec3::new(0.5, 0.2, 1.0)), Ok(()));
         let shut = DVec3::new(0.5, 1.0, 0.3);
         assert_eq!(moved(&flat, shut), Err(Refusal::Fold));
-        assert_eq!(moved(&flat, shut * DVec3::new(1.0, 1.0, -1.0)), Err(Refusal::Fold));
+        assert_eq!(
+            moved(&flat, shut * DVec3::new(1.0, 1.0, -1.0)),
+            Err(Refusal::Fold)
+        );
         let folded = hinge(shut);
         assert_eq!(moved(&folded, DVec3::new(0.5, 1.0, 0.4)), Ok(()));
         assert_eq!(

@@ -250,4 +250,3 @@ impl<'a> Reader<'a> {
         String::from_utf8(bytes).map_err(|_| self.bad("a text is not UTF-8"))
     }
 }
-

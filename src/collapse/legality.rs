@@ -235,12 +235,7 @@ pub const DEGENERATE: f64 = 1e-7;
 /// [`Refusal::Degenerate`] or [`Refusal::Flip`].
 pub fn shape(ring: &Ring, position: DVec3, rules: Rules) -> Result<(), Refusal> {
     for face in ring.faces.iter().filter(|f| f.survives) {
-        turn(
-            face.points,
-            face.normal,
-            face.points_after(position),
-            rules,
-        )?;
+        turn(face.points, face.normal, face.points_after(position), rules)?;
     }
     Ok(())
 }

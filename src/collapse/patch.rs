@@ -130,7 +130,8 @@ impl Patch {
     /// The edge that this patch flips, the smaller end first; `None` where it is no flip.
     #[must_use]
     pub fn flipped(&self) -> Option<[u32; 2]> {
-        let ([f, g], [new_f, new_g], None) = (&self.removed[..], &self.added[..], self.moved) else {
+        let ([f, g], [new_f, new_g], None) = (&self.removed[..], &self.added[..], self.moved)
+        else {
             return None;
         };
         let lost = |old: &PatchFace, new: &PatchFace| {

@@ -2,7 +2,7 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{self, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
+    image::{self, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
     memoryless::Memoryless,
     quadric::QuadricMethod,
 };
@@ -10,7 +10,7 @@ use crate::{
     Error, Progress, Result,
     collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
-    raster::{BucketEngine, Model, Scene},
+    raster::{BucketEngine, Scene, Unrender},
     view::{ViewsName, frame_of},
 };
 
@@ -40,7 +40,9 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
             let method = QuadricMethod::new(&run.live, own);
             run.phase("quadric", method, target)?.0
         }
-        MethodOptions::Image(own) => run.image(own, target)?,
+        MethodOptions::Image(own) => match own.engine {
+            EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
+        },
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -100,7 +102,7 @@ impl<'a> Run<'a> {
     }
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
-    fn image(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+    fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
         let set = own.views(&original, frame, 0)?;
@@ -117,10 +119,7 @@ impl<'a> Run<'a> {
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
-            let method =
-                ImageDriven::new(&scene, &self.live, &set, own.placement, limit, |scene| {
-                    BucketEngine::new(Model::new(scene, &set), &set)
-                });
+            let method = ImageDriven::<E>::new(&scene, &self.live, &set, own.placement, limit);
             // Where an error limits the run, pre-simplification must not use up more than half of it.
             let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
             if !too_far || self.phases.is_empty() {
@@ -142,12 +141,11 @@ impl<'a> Run<'a> {
         let mut pictures = method.into_pictures();
         if own.polish.sweeps > 0 {
             // The limit is one for the views that the user was told.
-            let turns = self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
+            let turns =
+                self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
             let mut fresh = |live: &LiveMesh, round: u32| {
                 let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
-                Some(Pictures::new(&scene, live, &set, |scene| {
-                    BucketEngine::new(Model::new(scene, &set), &set)
-                }))
+                Some(Pictures::<E>::new(&scene, live, &set))
             };
             let counters;
             (pictures, counters) = image::polish(

@@ -82,7 +82,10 @@ pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
     if round == 0 {
         return directions.to_vec();
     }
-    let (a, b) = (GOLDEN_ANGLE * f64::from(round), SILVER_ANGLE * f64::from(round));
+    let (a, b) = (
+        GOLDEN_ANGLE * f64::from(round),
+        SILVER_ANGLE * f64::from(round),
+    );
     let ((sin_a, cos_a), (sin_b, cos_b)) =
         ((math::sin(a), math::cos(a)), (math::sin(b), math::cos(b)));
     let turn = |d: &DVec3| {

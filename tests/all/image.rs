@@ -8,7 +8,7 @@ use lodmark::{
         Topology,
     },
     mesh::{Mesh, canonical, generate},
-    raster::{self, BucketEngine, Model, Scene},
+    raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
         image::{ImageDriven, ImageOptions, Start},
@@ -54,7 +54,6 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
         set,
         MemorylessOptions::default(),
         None,
-        |scene| BucketEngine::new(Model::new(scene, set), set),
     );
     Watched { inner, last: None }
 }
@@ -64,8 +63,8 @@ fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
     let (a, b) = (Scene::of(original), Scene::of(current));
     let view = |view: &View| -> i64 {
         let (x, y) = (
-            raster::luma(&a, view, set).tones,
-            raster::luma(&b, view, set).tones,
+            raster::luma_sums(&a, view, set),
+            raster::luma_sums(&b, view, set),
         );
         x.values()
             .iter()
@@ -185,8 +184,11 @@ fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
         ("orthographic", around(Projection::Orthographic)),
         (
             "16 bits",
-            outside.with_subpixel(lodmark::num::fixed::SubpixelBits::Sixteen),
+            outside
+                .clone()
+                .with_subpixel(lodmark::num::fixed::SubpixelBits::Sixteen),
         ),
+        ("2 x 2 samples", outside.with_samples(2).expect("small")),
         ("inside, near-clipped", inside),
     ]
 }
@@ -234,7 +236,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
-                        fresh.tones == *raster::Unrender::luma(pictures.engine(), i),
+                        fresh.tones == raster::Unrender::luma(pictures.engine(), i),
                         "{mesh_name}, {view_name}"
                     );
                 }

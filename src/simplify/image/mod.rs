@@ -45,10 +45,7 @@ pub struct ImageScratch<S> {
 
 impl<E: Unrender> ImageDriven<E> {
     /// Prepares the pictures of `live` in the views of `set`, to be compared with those of `original` (in the same
-    /// frame). `build` makes the un-rendering engine. `rms_limit` ends the run before the root mean square of the
-    /// luma differences over all views exceeds it.
-    ///
-    /// Memory: the engine's, plus a byte per pixel and view.
+    /// frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
     pub fn new(
         original: &Scene,
@@ -56,11 +53,10 @@ impl<E: Unrender> ImageDriven<E> {
         set: &ViewSet,
         placement: MemorylessOptions,
         rms_limit: Option<f64>,
-        build: impl FnOnce(&Scene) -> E,
     ) -> Self {
-        let pictures = Pictures::new(original, live, set, build);
+        let pictures = Pictures::new(original, live, set);
         Self {
-            limit: rms_limit.map(|rms| rms * rms * pictures.pixels()),
+            limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
             scratch: pictures.scratch(),
             pictures,
             placement,

@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Most pixels of all driving images together; every one takes some ten bytes throughout the run.
+/// Most samples of all driving images together; every one takes some ten bytes throughout the run.
 const PIXEL_LIMIT: u64 = 1 << 27;
 
 /// Where the image-driven part of a run begins; the memoryless method gets there.
@@ -110,6 +110,9 @@ pub struct ImageOptions {
     pub views: ViewsName,
     /// Width and height of every image, in pixels; 1 to 4096, and all views together at most 2^27 pixels.
     pub size: u32,
+    /// Samples in a pixel along each axis: 1, 2 or 4.
+    #[serde(default = "one")]
+    pub samples: u32,
     /// Flat, Gouraud, or some of each.
     pub shading: DrivingShading,
     /// An optional specular term.
@@ -134,6 +137,7 @@ impl Default for ImageOptions {
             preset: Preset::default(),
             views: ViewsName::Dodecahedron,
             size: 256,
+            samples: 1,
             shading: DrivingShading::Flat,
             specular: None,
             interior_views: 0,
@@ -157,6 +161,12 @@ impl ImageOptions {
                 self.size
             )));
         }
+        if ![1, 2, 4].contains(&self.samples) {
+            return Err(Error::Usage(format!(
+                "{} samples per pixel along each axis; expected 1, 2 or 4",
+                self.samples
+            )));
+        }
         if let Some(s) = self.specular {
             let strength = s.strength >= 0.0 && s.strength <= 1.0;
             if !strength || s.exponent == 0 {
@@ -174,11 +184,11 @@ impl ImageOptions {
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
-    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel, and for more
-    /// pixels in all than 2^27.
+    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for more samples in all than 2^27.
     pub fn views(&self, original: &Mesh, frame: Frame, round: u32) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
+        let size = [self.size; 2];
         let set = match self.views.directions() {
             Some(directions) => ViewSet::around(
                 &sphere,
@@ -186,32 +196,23 @@ impl ImageOptions {
                 self.size,
                 self.size,
                 Projection::Perspective,
-            )?,
-            None => view::resolve(
-                &self.views,
-                &sphere,
-                [self.size; 2],
-                Projection::Perspective,
-            )?,
+            )?
+            .with_samples(self.samples)?,
+            None => view::resolve(&self.views, &sphere, size, Projection::Perspective)?,
         };
-        let pixels = set.views.len() as u64 * u64::from(set.width) * u64::from(set.height);
+        let samples = u64::from(set.samples * set.samples);
+        let pixels =
+            set.views.len() as u64 * u64::from(set.width) * u64::from(set.height) * samples;
         if pixels > PIXEL_LIMIT {
             return Err(Error::Unsupported(format!(
-                "{} driving images of {} x {} pixels do not fit into memory; expected at most {PIXEL_LIMIT} pixels in \
-                 all, so choose fewer or smaller images",
+                "{} driving images of {} x {} pixels with {samples} samples each do not fit into memory; expected at \
+                 most {PIXEL_LIMIT} samples in all, so choose fewer or smaller images",
                 set.views.len(),
                 set.width,
                 set.height
             )));
         }
-        if let ViewsName::File(path) = &self.views {
-            if set.samples != 1 {
-                return Err(Error::Unsupported(format!(
-                    "{} has {} samples per pixel; the driving images have 1",
-                    path.display(),
-                    set.samples
-                )));
-            }
+        if let ViewsName::File(_) = &self.views {
             return Ok(set.enter_frame(frame));
         }
         let mut set = set;
@@ -247,6 +248,10 @@ impl fmt::Display for Preset {
             Self::Best => "best",
         })
     }
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// `views` as the text of the command line.

@@ -16,7 +16,6 @@ pub struct Pictures<E> {
     error: ImageError<E>,
     slots: Slots,
     gouraud: bool,
-    samples: f64,
 }
 
 /// Buffers of one thread.
@@ -27,24 +26,15 @@ pub struct PictureScratch<S> {
 }
 
 impl<E: Unrender> Pictures<E> {
-    /// Draws `live` in the views of `set`, to be compared with `original` (in the same frame). `build` makes the
-    /// un-rendering engine.
-    ///
-    /// Memory: the engine's, plus a byte per pixel and view.
+    /// Draws `live` in the views of `set`, to be compared with `original` (in the same frame).
     #[must_use]
-    pub fn new(
-        original: &Scene,
-        live: &LiveMesh,
-        set: &ViewSet,
-        build: impl FnOnce(&Scene) -> E,
-    ) -> Self {
+    pub fn new(original: &Scene, live: &LiveMesh, set: &ViewSet) -> Self {
         let (slots, scene) = Slots::of(live);
         let mut views = set.views.iter();
         Self {
-            error: ImageError::new(original, &scene, set, build(&scene)),
+            error: ImageError::new(original, &scene, set),
             slots,
             gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
-            samples: (set.views.len() as f64) * f64::from(set.width) * f64::from(set.height),
         }
     }
 
@@ -52,18 +42,6 @@ impl<E: Unrender> Pictures<E> {
     #[must_use]
     pub fn error(&self) -> &ImageError<E> {
         &self.error
-    }
-
-    /// Number of pixels of all views together.
-    #[must_use]
-    pub fn pixels(&self) -> f64 {
-        self.samples
-    }
-
-    /// True where vertex normals decide what a view shows.
-    #[must_use]
-    pub fn gouraud(&self) -> bool {
-        self.gouraud
     }
 
     /// Buffers for a thread.

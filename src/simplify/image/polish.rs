@@ -184,7 +184,14 @@ impl<E: Unrender> Polisher<'_, E> {
             self.take_strangers(&mut waiting, &mut batch, Self::around_vertex);
             let found = self.in_parallel(&batch, |polisher, search, &v| {
                 let step = polisher.stands[v as usize].step;
-                search.run(polisher.live, &polisher.pictures, polisher.rules, v, step, turn)
+                search.run(
+                    polisher.live,
+                    &polisher.pictures,
+                    polisher.rules,
+                    v,
+                    step,
+                    turn,
+                )
             });
             let mut committed = false;
             for (&v, found) in batch.iter().zip(found) {
@@ -226,7 +233,13 @@ impl<E: Unrender> Polisher<'_, E> {
 
     /// Makes the move that a search found, unless it is no longer one for the better; `stale` where the pictures have
     /// changed since.
-    fn make_move(&mut self, vertex: u32, found: Found, stale: bool, observer: &mut dyn Observer) -> bool {
+    fn make_move(
+        &mut self,
+        vertex: u32,
+        found: Found,
+        stale: bool,
+        observer: &mut dyn Observer,
+    ) -> bool {
         let Some((to, _)) = found.better else {
             return false;
         };
@@ -241,12 +254,13 @@ impl<E: Unrender> Polisher<'_, E> {
 
     /// Commits the patch of `own`; false where that turns out not to lower the error, and nothing has changed.
     fn keep(&mut self, stale: bool, observer: &mut dyn Observer) -> bool {
-        let Search { patch, pictures, .. } = &mut self.own;
+        let Search {
+            patch, pictures, ..
+        } = &mut self.own;
         let cost = self.pictures.commit(self.live, patch, pictures);
         debug_assert!(stale || cost < 0, "a fresh cost is exact");
         if cost >= 0 {
-            self.pictures
-                .commit(self.live, &patch.reversed(), pictures);
+            self.pictures.commit(self.live, &patch.reversed(), pictures);
             self.counters.reverted += 1;
             return false;
         }
@@ -279,7 +293,11 @@ impl<E: Unrender> Polisher<'_, E> {
             let now = self.clock;
             let costs = self.in_parallel(&batch, |polisher, search, &e| {
                 let patch = polisher.flip(e, &mut search.patch)?;
-                Some(polisher.pictures.cost(polisher.live, patch, &mut search.pictures))
+                Some(
+                    polisher
+                        .pictures
+                        .cost(polisher.live, patch, &mut search.pictures),
+                )
             });
             let mut committed = false;
             for (&e, cost) in batch.iter().zip(costs) {
