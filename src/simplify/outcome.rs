@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Options;
+use super::{Options, image::PolishCounters};
 use crate::{
     collapse::{Counters, History, Refusals},
     mesh::Mesh,
@@ -49,6 +49,8 @@ pub struct Outcome {
     pub stop: Stop,
     /// What the run did, in order.
     pub phases: Vec<Phase>,
+    /// What the polishing did, where there was any.
+    pub polish: Option<PolishCounters>,
     /// The options as they were used: nothing in them is left to a default.
     pub options: Options,
     /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at

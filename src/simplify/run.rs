@@ -2,7 +2,7 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{ImageDriven, ImageOptions, Start},
+    image::{self, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
     memoryless::Memoryless,
     quadric::QuadricMethod,
 };
@@ -10,8 +10,8 @@ use crate::{
     Error, Progress, Result,
     collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
-    raster::{BucketEngine, Scene},
-    view::frame_of,
+    raster::{BucketEngine, Scene, Unrender},
+    view::{ViewsName, frame_of},
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
@@ -40,7 +40,9 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
             let method = QuadricMethod::new(&run.live, own);
             run.phase("quadric", method, target)?.0
         }
-        MethodOptions::Image(own) => run.image(own, target)?,
+        MethodOptions::Image(own) => match own.engine {
+            EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
+        },
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -56,6 +58,7 @@ struct Run<'a> {
     options: Options,
     recorder: Recorder,
     phases: Vec<Phase>,
+    polish: Option<PolishCounters>,
     error_rms: Option<f64>,
     progress: &'a dyn Progress,
 }
@@ -69,6 +72,7 @@ impl<'a> Run<'a> {
             options: options.clone(),
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
+            polish: None,
             error_rms: None,
             progress,
         }
@@ -98,11 +102,11 @@ impl<'a> Run<'a> {
     }
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
-    fn image(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+    fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
-        let set = own.views(&original, frame)?;
-        let original = Scene::of(&original);
+        let set = own.views(&original, frame, 0)?;
+        let scene = Scene::of(&original);
         let mut start = own.start.triangles(target.triangles);
         let method = loop {
             if self.live.triangle_count() > start {
@@ -115,8 +119,7 @@ impl<'a> Run<'a> {
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
-            let method =
-                ImageDriven::<BucketEngine>::new(&original, &self.live, &set, own.placement, limit);
+            let method = ImageDriven::<E>::new(&scene, &self.live, &set, own.placement, limit);
             // Where an error limits the run, pre-simplification must not use up more than half of it.
             let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
             if !too_far || self.phases.is_empty() {
@@ -135,7 +138,28 @@ impl<'a> Run<'a> {
             ..own.clone()
         });
         let (end, method) = self.phase("image", method, target)?;
-        self.error_rms = Some(method.error().rms());
+        let mut pictures = method.into_pictures();
+        if own.polish.sweeps > 0 {
+            // The limit is one for the views that the user was told.
+            let turns =
+                self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
+            let mut fresh = |live: &LiveMesh, round: u32| {
+                let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
+                Some(Pictures::<E>::new(&scene, live, &set))
+            };
+            let counters;
+            (pictures, counters) = image::polish(
+                &mut self.live,
+                pictures,
+                own.polish,
+                self.options.rules,
+                &mut fresh,
+                &mut self.recorder,
+                self.progress,
+            )?;
+            self.polish = Some(counters);
+        }
+        self.error_rms = Some(pictures.error().rms());
         Ok(end)
     }
 
@@ -151,6 +175,7 @@ impl<'a> Run<'a> {
             history: self.recorder.finish(json),
             stop,
             phases: self.phases,
+            polish: self.polish,
             options: self.options,
             error_rms: self.error_rms,
         })

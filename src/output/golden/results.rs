@@ -16,7 +16,7 @@ use crate::{
     raster::{Plane, Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Outcome, Replay,
-        image::{ImageOptions, Start},
+        image::{DrivingShading, ImageOptions, Start},
         quadric::QuadricOptions,
         simplify,
     },
@@ -69,7 +69,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
         ..ImageOptions::default()
     };
     let gouraud = ImageOptions {
-        shading: Interpolation::Gouraud,
+        shading: DrivingShading::Gouraud,
         ..small.clone()
     };
     let interior = ImageOptions {

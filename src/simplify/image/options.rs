@@ -4,13 +4,16 @@ use std::{fmt, str::FromStr};
 
 use serde::{Deserialize, Serialize};
 
-use super::super::memoryless::MemorylessOptions;
+use super::{super::memoryless::MemorylessOptions, Polish};
 use crate::{
     Error, Result,
     collapse::Schedule,
     mesh::Mesh,
     num::Frame,
-    view::{self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName},
+    view::{
+        self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName,
+        directions::turned,
+    },
 };
 
 /// Most samples of all driving images together; every one takes some ten bytes throughout the run.
@@ -60,6 +63,32 @@ pub enum Preset {
     Best,
 }
 
+/// What the driving views are shaded like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DrivingShading {
+    /// All flat.
+    #[default]
+    Flat,
+    /// All Gouraud.
+    Gouraud,
+    /// The first, third, ... Gouraud, the others flat.
+    Mixed,
+}
+
+impl DrivingShading {
+    /// The shading of the view at `index`.
+    #[must_use]
+    pub const fn of_view(self, index: usize) -> Interpolation {
+        match self {
+            Self::Flat => Interpolation::Flat,
+            Self::Gouraud => Interpolation::Gouraud,
+            Self::Mixed if index.is_multiple_of(2) => Interpolation::Gouraud,
+            Self::Mixed => Interpolation::Flat,
+        }
+    }
+}
+
 /// How pictures find what a removed triangle hid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -81,8 +110,11 @@ pub struct ImageOptions {
     pub views: ViewsName,
     /// Width and height of every image, in pixels; 1 to 4096, and all views together at most 2^27 pixels.
     pub size: u32,
-    /// Flat or Gouraud.
-    pub shading: Interpolation,
+    /// Samples in a pixel along each axis: 1, 2 or 4.
+    #[serde(default = "one")]
+    pub samples: u32,
+    /// Flat, Gouraud, or some of each.
+    pub shading: DrivingShading,
     /// An optional specular term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specular: Option<Specular>,
@@ -94,6 +126,9 @@ pub struct ImageOptions {
     pub engine: EngineName,
     /// Placement of the new vertex (section 4.1).
     pub placement: MemorylessOptions,
+    /// What follows the last collapse.
+    #[serde(default)]
+    pub polish: Polish,
 }
 
 impl Default for ImageOptions {
@@ -102,12 +137,14 @@ impl Default for ImageOptions {
             preset: Preset::default(),
             views: ViewsName::Dodecahedron,
             size: 256,
-            shading: Interpolation::Flat,
+            samples: 1,
+            shading: DrivingShading::Flat,
             specular: None,
             interior_views: 0,
             start: Start::Auto,
             engine: EngineName::Buckets,
             placement: MemorylessOptions::default(),
+            polish: Polish::default(),
         }
     }
 }
@@ -124,6 +161,12 @@ impl ImageOptions {
                 self.size
             )));
         }
+        if ![1, 2, 4].contains(&self.samples) {
+            return Err(Error::Usage(format!(
+                "{} samples per pixel along each axis; expected 1, 2 or 4",
+                self.samples
+            )));
+        }
         if let Some(s) = self.specular {
             let strength = s.strength >= 0.0 && s.strength <= 1.0;
             if !strength || s.exponent == 0 {
@@ -136,20 +179,27 @@ impl ImageOptions {
         Ok(())
     }
 
-    /// The driving views onto `original`, which is in units of `frame`.
+    /// The driving views onto `original`, which is in units of `frame`, turned as a whole for the given `round`; 0 is
+    /// not turned, and view files never are.
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
     /// [`Error::Io`] for a view file; [`Error::Unsupported`] for more samples in all than 2^27.
-    pub fn views(&self, original: &Mesh, frame: Frame) -> Result<ViewSet> {
+    pub fn views(&self, original: &Mesh, frame: Frame, round: u32) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
-        let set = view::resolve(
-            &self.views,
-            &sphere,
-            [self.size; 2],
-            Projection::Perspective,
-        )?;
+        let size = [self.size; 2];
+        let set = match self.views.directions() {
+            Some(directions) => ViewSet::around(
+                &sphere,
+                &turned(&directions, round),
+                self.size,
+                self.size,
+                Projection::Perspective,
+            )?
+            .with_samples(self.samples)?,
+            None => view::resolve(&self.views, &sphere, size, Projection::Perspective)?,
+        };
         let samples = u64::from(set.samples * set.samples);
         let pixels =
             set.views.len() as u64 * u64::from(set.width) * u64::from(set.height) * samples;
@@ -165,13 +215,15 @@ impl ImageOptions {
         if let ViewsName::File(_) = &self.views {
             return Ok(set.enter_frame(frame));
         }
-        let shading = Shading {
-            interpolation: self.shading,
-            specular: self.specular,
-            ..Shading::default()
-        };
-        set.with_shading(shading)
-            .with_interior_views(self.interior_views)
+        let mut set = set;
+        for (i, view) in set.views.iter_mut().enumerate() {
+            view.shading = Shading {
+                interpolation: self.shading.of_view(i),
+                specular: self.specular,
+                ..Shading::default()
+            };
+        }
+        set.with_interior_views(self.interior_views)
     }
 }
 
@@ -196,6 +248,10 @@ impl fmt::Display for Preset {
             Self::Best => "best",
         })
     }
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// `views` as the text of the command line.
