@@ -140,7 +140,9 @@ enum ShadingName {
 /// [`EngineName`] by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum EngineChoice {
-    /// Row and column buckets
+    /// All fragments of every sample, sorted
+    Layers,
+    /// Row and column buckets: the published way, much slower
     Buckets,
 }
 
@@ -272,6 +274,7 @@ impl Options {
             },
             engine: match self.engine {
                 None => default.engine,
+                Some(EngineChoice::Layers) => EngineName::Layers,
                 Some(EngineChoice::Buckets) => EngineName::Buckets,
             },
             ..default

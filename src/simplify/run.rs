@@ -10,7 +10,7 @@ use crate::{
     Error, Progress, Result,
     collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
     mesh::Mesh,
-    raster::{BucketEngine, Scene, Unrender},
+    raster::{BucketEngine, LayerEngine, Scene, Unrender},
     view::{ViewsName, frame_of},
 };
 
@@ -41,6 +41,7 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
             run.phase("quadric", method, target)?.0
         }
         MethodOptions::Image(own) => match own.engine {
+            EngineName::Layers => run.image::<LayerEngine>(own, target)?,
             EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
         },
     };

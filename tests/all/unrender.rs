@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
-    raster::{self, Added, BucketEngine, Change, Model, Plane, Scene, Unrender},
+    raster::{self, Added, BucketEngine, Change, LayerEngine, Model, Plane, Scene, Unrender},
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
 use proptest::prelude::*;
@@ -264,8 +264,9 @@ proptest! {
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
         let reference: Vec<Plane<u16>> =
             set.views.iter().map(|v| raster::luma_sums(&start.scene(), v, &set)).collect();
-        let mut engine = BucketEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
-        let mut scratch = engine.scratch();
+        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut scratches = (buckets.scratch(), layers.scratch());
         let mut now = start;
         let mut error = 0_i64;
         for step in &steps {
@@ -274,15 +275,21 @@ proptest! {
             let change =
                 Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
             let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
-            let cost = engine.evaluate(&change, &mut scratch);
-            let committed = engine.commit(&change, &mut scratch);
-            prop_assert_eq!(cost, committed);
+            let costs = [
+                buckets.evaluate(&change, &mut scratches.0),
+                layers.evaluate(&change, &mut scratches.1),
+            ];
+            let committed = buckets.commit(&change, &mut scratches.0);
+            prop_assert_eq!(layers.commit(&change, &mut scratches.1), committed);
+            prop_assert_eq!(costs, [committed; 2]);
             error += committed;
             let mut scratch_error = 0;
             for (i, view) in set.views.iter().enumerate() {
                 let fresh = raster::luma(&after.scene(), view, &set);
-                prop_assert_eq!(&fresh.keys, &engine.keys(i));
-                prop_assert_eq!(&fresh.tones, &engine.luma(i));
+                prop_assert_eq!(&fresh.keys, &buckets.keys(i));
+                prop_assert_eq!(&fresh.keys, &layers.keys(i));
+                prop_assert_eq!(&fresh.tones, &buckets.luma(i));
+                prop_assert_eq!(&fresh.tones, &layers.luma(i));
                 let sums = raster::luma_sums(&after.scene(), view, &set);
                 scratch_error +=
                     sums.values().iter().zip(reference[i].values()).map(|(&y, &y0)| square(y0, y)).sum::<i64>();

@@ -93,8 +93,10 @@ impl DrivingShading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineName {
-    /// Row and column buckets, section 4.2.3 of the paper.
+    /// All fragments of every sample, sorted.
     #[default]
+    Layers,
+    /// Row and column buckets, section 4.2.3 of the paper: slower by far, with the same result.
     Buckets,
 }
 
@@ -142,7 +144,7 @@ impl Default for ImageOptions {
             specular: None,
             interior_views: 0,
             start: Start::Auto,
-            engine: EngineName::Buckets,
+            engine: EngineName::Layers,
             placement: MemorylessOptions::default(),
             polish: Polish::default(),
         }
