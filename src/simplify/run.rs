@@ -33,8 +33,8 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
     let target = Target { triangles };
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
-            run.phase("memoryless", Memoryless { options: *own }, target)?
-                .0
+            let method = Memoryless::new(&run.live, *own);
+            run.phase("memoryless", method, target)?.0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
@@ -111,9 +111,7 @@ impl<'a> Run<'a> {
         let mut start = own.start.triangles(target.triangles);
         let method = loop {
             if self.live.triangle_count() > start {
-                let method = Memoryless {
-                    options: own.placement,
-                };
+                let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
                 self.phase("memoryless", method, Target { triangles })?;
