@@ -104,6 +104,10 @@ impl<'a> Run<'a> {
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
     fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+        let own = &ImageOptions {
+            size: own.size.pixels(target.triangles).into(),
+            ..own.clone()
+        };
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
         let set = own.views(&original, frame, 0)?;
