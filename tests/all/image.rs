@@ -59,7 +59,7 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
 }
 
 /// Sum of squared luma differences, by drawing everything.
-fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
+pub(crate) fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
     let (a, b) = (Scene::of(original), Scene::of(current));
     let view = |view: &View| -> i64 {
         let (x, y) = (
@@ -76,7 +76,7 @@ fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
 }
 
 /// Meshes with everything that makes surgery hard.
-fn meshes() -> Vec<(&'static str, Mesh)> {
+pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
     let mesh = |positions: &[[f64; 3]], triangles: Vec<[u32; 3]>| {
         let positions = positions.iter().map(|&p| DVec3::from_array(p)).collect();
         Mesh::from_triangles(positions, triangles).expect("valid")
@@ -127,7 +127,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
+pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
     let around = |projection| {
         let directions: Vec<DVec3> = dodecahedron().into_iter().step_by(5).collect();
         ViewSet::around(sphere, &directions, 40, 32, projection).expect("views")

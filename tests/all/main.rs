@@ -18,6 +18,7 @@ mod mesh;
 mod metric;
 mod metric_surface;
 mod output;
+mod polish;
 mod quadric;
 mod raster;
 mod seams;
