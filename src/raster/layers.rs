@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use super::{
     Change, Model, Plane, Unrender,
     lanes::{Boxes, Lanes},
-    layer_view::{Around, LayerView, Look},
+    layer_view::{Around, LayerView},
+    look::Look,
     prepare::Prepared,
 };
 use crate::view::ViewSet;
@@ -89,8 +90,8 @@ impl Part {
                 .collect();
         }
         for (lane, view) in part.views.iter().enumerate() {
-            for &key in view.stacks.nearest() {
-                let id = key as u32 as usize;
+            for shown in view.stacks.shown() {
+                let id = shown.id() as usize;
                 if id < part.seen.len() {
                     part.counts[id * count + lane] += 1;
                     part.seen[id] |= 1 << lane;
@@ -179,7 +180,7 @@ impl Part {
             };
             sum += view.look(&around, &mut scratch.look);
             view.apply(&around, &mut scratch.look);
-            for &(before, after) in scratch.look.swaps() {
+            for &(before, after) in &scratch.look.swaps {
                 for (id, step) in [(before, u32::MAX), (after, 1)] {
                     let Some(seen) = self.seen.get_mut(id as usize) else {
                         continue; // the background
@@ -293,7 +294,7 @@ impl Unrender for LayerEngine {
     }
 
     fn luma(&self, view: usize) -> Plane<u8> {
-        self.plane(self.place(view).luma.clone())
+        self.plane(self.place(view).luma())
     }
 
     fn keys(&self, view: usize) -> Plane<u64> {
