@@ -13,7 +13,7 @@ use crate::{
     mesh::{self, content_sha256},
     simplify::{
         Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
-        image::{DrivingShading, EngineName, ImageOptions, Polish, Preset, Start},
+        image::{DrivingShading, EngineName, ImageOptions, Polish, Preset, Size, Start},
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify,
@@ -252,13 +252,10 @@ impl Options {
     }
 
     fn image(&self, preset: Preset) -> ImageOptions {
-        let default = ImageOptions {
-            preset,
-            ..ImageOptions::default()
-        };
+        let default = preset.options();
         ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
-            size: self.size.unwrap_or(default.size),
+            size: self.size.map_or(default.size, Size::Pixels),
             samples: self.samples.unwrap_or(default.samples),
             shading: match self.shading {
                 None => default.shading,

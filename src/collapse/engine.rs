@@ -41,6 +41,9 @@ pub struct Counters {
     pub collapses: u64,
     /// Edges evaluated, those of rank measurements not counted.
     pub evaluations: u64,
+    /// Costs of edges that were estimated from sums.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub estimates: u64,
     /// Edges an eager queue would have evaluated for the same collapses.
     pub evaluations_if_eager: u64,
     /// How often each rule refused in an evaluation.
@@ -48,6 +51,11 @@ pub struct Counters {
     /// Where rank measurement is on: for every measured collapse, the share of legal edges that were truly cheaper,
     /// in [0, 1).
     pub ranks: Vec<f64>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Watches a run: history, charts, tests.
@@ -83,6 +91,8 @@ pub struct Engine<M: Method> {
     ring: Ring,
     scratch: M::Scratch,
     patch: Patch,
+    /// The edge of `ring`, where nothing was committed since it was collected.
+    gathered: Option<u32>,
     changes: Changes,
     inherited: Vec<(u32, Option<Proposal>)>,
     touched: Vec<u32>,
@@ -104,6 +114,7 @@ impl<M: Method> Engine<M> {
             ring: Ring::default(),
             scratch,
             patch: Patch::default(),
+            gathered: None,
             changes: Changes::default(),
             inherited: Vec::new(),
             touched: Vec::new(),
@@ -175,13 +186,28 @@ impl<M: Method> Engine<M> {
                     let blocked = self.blocked();
                     break End::NoLegalCollapse { blocked };
                 }
-                Some(Front::Stale(id)) => self.refresh(&mut queue, &[id]),
+                Some(Front::Stale(id)) => {
+                    let estimate = if queue.is_estimated(id) {
+                        None
+                    } else {
+                        self.method.estimate(&self.live, id)
+                    };
+                    match estimate {
+                        Some(geometric) => {
+                            self.counters.estimates += 1;
+                            queue.defer(&self.live, id, geometric);
+                        }
+                        None => self.refresh(&mut queue, &[id]),
+                    }
+                }
                 Some(Front::Ready(id, proposal)) => {
                     if self.counters.collapses.is_multiple_of(REPORT_EVERY) {
                         let done = (start - self.live.triangle_count()) as u64;
                         progress.step("collapse", done, total)?;
                     }
-                    self.ring.gather(&self.live, id);
+                    if self.gathered != Some(id) {
+                        self.ring.gather(&self.live, id);
+                    }
                     let position = proposal.position.position();
                     self.ring.patch(&self.live, position, &mut self.patch);
                     if !self.method.within_limit(&self.live, &self.patch, &proposal) {
@@ -207,6 +233,7 @@ impl<M: Method> Engine<M> {
             }
         }
         self.live.apply(&self.patch, &mut self.changes);
+        self.gathered = None;
         self.counters.collapses += 1;
         self.method.committed(&self.live, &self.patch);
         observer.committed(&self.live, &self.patch);
@@ -246,6 +273,14 @@ impl<M: Method> Engine<M> {
             }
             Schedule::Eager => {}
         }
+        touched.retain(|&e| match self.method.estimate(live, e) {
+            Some(geometric) => {
+                self.counters.estimates += 1;
+                queue.expect(live, e, geometric);
+                false
+            }
+            None => true,
+        });
         if !touched.is_empty() {
             touched.sort_unstable();
             self.refresh(queue, &touched);
@@ -266,6 +301,7 @@ impl<M: Method> Engine<M> {
                     &mut self.ring,
                     &mut self.scratch,
                 );
+                self.gathered = Some(id);
                 self.note(queue, id, outcome);
             }
         } else {
@@ -285,10 +321,11 @@ impl<M: Method> Engine<M> {
 
     /// Evaluates every edge, block by block, so that the user hears of it and can stop it.
     fn first_queue(&mut self, progress: &dyn Progress) -> Result<Queue> {
-        let ids = self.live_edges();
+        let mut ids = self.live_edges();
         let per_task = CHUNK.min(self.method.evaluations_per_task());
-        self.counters.evaluations += ids.len() as u64;
         self.counters.evaluations_if_eager += ids.len() as u64;
+        let estimated = self.estimate_all(&mut ids);
+        self.counters.evaluations += ids.len() as u64;
         let mut evaluated = Vec::with_capacity(ids.len());
         for (i, block) in ids.chunks(per_task * TASKS).enumerate() {
             let done = i * per_task * TASKS;
@@ -300,7 +337,23 @@ impl<M: Method> Engine<M> {
                 }
             }
         }
-        Ok(Queue::new(&self.live, evaluated))
+        Ok(Queue::new(&self.live, evaluated, estimated))
+    }
+
+    /// Estimates edges in parallel; those without an estimate stay in `ids`.
+    fn estimate_all(&mut self, ids: &mut Vec<u32>) -> Vec<(u32, f64)> {
+        let (live, method) = (&self.live, &self.method);
+        let estimates: Vec<Option<f64>> = ids
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&id| method.estimate(live, id))
+            .collect();
+        let pairs = ids.iter().zip(&estimates);
+        let estimated: Vec<_> = pairs.filter_map(|(&id, &e)| Some((id, e?))).collect();
+        let mut estimates = estimates.into_iter();
+        ids.retain(|_| estimates.next().flatten().is_none());
+        self.counters.estimates += estimated.len() as u64;
+        estimated
     }
 
     fn live_edges(&self) -> Vec<u32> {

@@ -251,6 +251,16 @@ impl LiveMesh {
         self.faces_at.of(vertex).len()
     }
 
+    /// True where a vertex has as many edges as faces, as inside a surface; at a boundary it has one edge more.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[inline]
+    #[must_use]
+    pub fn has_closed_fan(&self, vertex: u32) -> bool {
+        self.faces_at.of(vertex).len() == self.edges_at.of(vertex).len()
+    }
+
     /// The edges at a vertex, in no particular order.
     ///
     /// # Panics

@@ -98,6 +98,17 @@ pub trait Method: Sync {
     /// The rule that forbids it: from [`Site::admit`], or [`Refusal::Unplaced`] or [`Refusal::Method`].
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal>;
 
+    /// What the collapse of an edge would cost if no rule forbade its best place: the second key, from sums that the
+    /// method keeps, without a look at the ring. `None` where the method has no such sums or they do not tell.
+    ///
+    /// Where it is given, an edge waits in the queue under its estimate and is proposed only when that comes to the
+    /// front; so estimates decide the order in which edges are looked at, and proposals what is collapsed. Only for
+    /// methods whose first key is always 0.
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let _ = (live, edge);
+        None
+    }
+
     /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before
     /// the limit is exceeded. The proposal may be stale (its costs were right when it was evaluated).
     fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {

@@ -12,8 +12,9 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::fan::Fans;
 use crate::{
-    collapse::{Admitted, BoundaryEdge, Method, Proposal, Refusal, Ring, Site},
+    collapse::{Admitted, BoundaryEdge, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site},
     num::math,
 };
 
@@ -53,9 +54,9 @@ const SIN2: f64 = 3.045_864_904_520_854_5e-4;
 
 /// A symmetric 3x3 matrix `[xx, xy, xz, yy, yz, zz]` and a vector: the gradient `H v + c` of a quadratic function.
 #[derive(Clone, Copy, Debug, Default)]
-struct Gradient {
-    h: [f64; 6],
-    c: DVec3,
+pub(super) struct Gradient {
+    pub(super) h: [f64; 6],
+    pub(super) c: DVec3,
 }
 
 impl Gradient {
@@ -242,6 +243,25 @@ impl Objective {
         sums
     }
 
+    /// The sums of a ring without boundary edges, relative to the midpoint of its edge, but for the shape of triangles.
+    pub(super) fn without_boundary(
+        normal_sum: DVec3,
+        volume_sum: f64,
+        volume: Gradient,
+        volume_weight: f64,
+    ) -> Self {
+        Self {
+            origin: DVec3::ZERO,
+            normal_sum,
+            volume_sum,
+            volume,
+            boundary: None,
+            shape: Gradient::default(),
+            weights: [volume_weight, 0.0],
+            order: ConstraintOrder::default(),
+        }
+    }
+
     /// The position that the constraints determine.
     #[must_use]
     pub fn place(&self) -> Placement {
@@ -339,11 +359,22 @@ impl Boundary {
     }
 }
 
-/// The method.
-#[derive(Clone, Copy, Debug, Default)]
+/// The method. By default it keeps no sums: every edge whose cost is wanted is looked at in full.
+#[derive(Clone, Debug, Default)]
 pub struct Memoryless {
-    /// Its options.
-    pub options: MemorylessOptions,
+    options: MemorylessOptions,
+    fans: Fans,
+}
+
+impl Memoryless {
+    /// The method on a mesh, with sums around every vertex, so that the engine can estimate costs. O(n).
+    #[must_use]
+    pub fn new(live: &LiveMesh, options: MemorylessOptions) -> Self {
+        Self {
+            options,
+            fans: Fans::of(live),
+        }
+    }
 }
 
 /// Places and prices the collapse of a site; also the placement and second key of the image-driven method.
@@ -398,5 +429,13 @@ impl Method for Memoryless {
 
     fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
         propose(site, &self.options)
+    }
+
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        self.fans.estimate(live, edge, &self.options)
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.fans.follow(live, patch);
     }
 }

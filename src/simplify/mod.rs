@@ -4,6 +4,7 @@
 //! ended. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
 //! methods use as well.
 
+mod fan;
 pub mod image;
 pub mod memoryless;
 mod options;

@@ -300,6 +300,12 @@ impl Method for QuadricMethod {
         })
     }
 
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let [u, w] = live.edge(edge)?;
+        let sum = self.quadric(u).plus(self.quadric(w));
+        Some(sum.error(sum.place([live.position(u), live.position(w)])))
+    }
+
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
         if let (Some(moved), Some(gone)) = (patch.moved, patch.gone) {
             let sum = self.quadric(moved.vertex).plus(self.quadric(gone));

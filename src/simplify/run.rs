@@ -33,8 +33,8 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
     let target = Target { triangles };
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
-            run.phase("memoryless", Memoryless { options: *own }, target)?
-                .0
+            let method = Memoryless::new(&run.live, *own);
+            run.phase("memoryless", method, target)?.0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
@@ -104,6 +104,10 @@ impl<'a> Run<'a> {
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
     fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+        let own = &ImageOptions {
+            size: own.size.pixels(target.triangles).into(),
+            ..own.clone()
+        };
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
         let set = own.views(&original, frame, 0)?;
@@ -111,9 +115,7 @@ impl<'a> Run<'a> {
         let mut start = own.start.triangles(target.triangles);
         let method = loop {
             if self.live.triangle_count() > start {
-                let method = Memoryless {
-                    options: own.placement,
-                };
+                let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
                 self.phase("memoryless", method, Target { triangles })?;

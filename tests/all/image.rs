@@ -337,7 +337,7 @@ impl lodmark::collapse::Observer for Taken {
 fn options(triangles: u64) -> Options {
     let mut options = Options::image(Amount::Triangles(triangles));
     options.method = MethodOptions::Image(ImageOptions {
-        size: 64,
+        size: 64.into(),
         ..ImageOptions::default()
     });
     options
@@ -382,7 +382,7 @@ fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
     let started = |triangles, start| {
         let mut options = options(triangles);
         options.method = MethodOptions::Image(ImageOptions {
-            size: 32,
+            size: 32.into(),
             start: Start::Triangles(start),
             ..ImageOptions::default()
         });

@@ -12,12 +12,14 @@ mod moves;
 mod options;
 mod pictures;
 mod polish;
+mod preset;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
-pub use options::{DrivingShading, EngineName, ImageOptions, Preset, Start};
+pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use pictures::{PictureScratch, Pictures};
 pub use polish::{Polish, PolishCounters, polish};
+pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{

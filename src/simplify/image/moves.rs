@@ -9,6 +9,9 @@ use crate::{
     raster::Unrender,
 };
 
+/// Farthest that a parabola is followed along one axis, in steps.
+const REACH: f64 = 2.0;
+
 /// Buffers of one thread.
 #[derive(Debug)]
 pub(super) struct Search<S> {
@@ -35,7 +38,7 @@ impl<S> Search<S> {
         }
     }
 
-    /// Fills the patch with the move of the star's vertex; false where that is not allowed.
+    /// Fills the patch with the move of the star's vertex to `to`, rounded; `None` where that is not allowed or no move.
     pub(super) fn prepare(&mut self, live: &LiveMesh, to: DVec3, rules: Rules) -> Option<DVec3> {
         let Self { star, patch, .. } = self;
         let to = star.admit(live, to, rules).ok()?;
@@ -48,18 +51,18 @@ impl<S> Search<S> {
         Some(to)
     }
 
-    /// Looks for a better position of `vertex` at distances of `step` times the mean length of its edges.
+    /// Looks for a better position of `vertex` at distances of `step` times the mean length of its edges; `turn` is the
+    /// angle of the tangents.
     ///
-    /// One axis after the other, from the best position so far: forwards, else backwards; then at the lowest point of
-    /// the parabola through the three costs.
+    /// Both ways along every axis, and then where the parabolas through the costs along the axes are lowest (at most
+    /// [`REACH`] steps away along each): a step of Newton's method with a diagonal matrix. The best of all that.
     pub(super) fn run<E: Unrender<Scratch = S>>(
         &mut self,
         live: &LiveMesh,
         pictures: &Pictures<E>,
         rules: Rules,
         vertex: u32,
-        step: f64,
-        turn: f64,
+        [step, turn]: [f64; 2],
     ) -> Found {
         let mut found = Found::default();
         self.star.gather(live, vertex);
@@ -72,44 +75,50 @@ impl<S> Search<S> {
             return found;
         };
         let length = step * self.star.mean_edge(live);
-        let basis = basis(normal, turn);
-        let (mut best, mut at) = (0_i64, self.star.point);
-        for axis in &basis[..axes] {
-            let base = best;
-            let origin = at;
-            let mut cost = |search: &mut Self, t: f64| -> Option<(DVec3, i64)> {
-                let to = search.prepare(live, origin + *axis * (t * length), rules)?;
-                found.evaluations += 1;
-                Some((to, pictures.cost(live, &search.patch, &mut search.pictures)))
-            };
-            let forward = cost(self, 1.0);
-            let mut take = |candidate: Option<(DVec3, i64)>| {
-                if let Some((to, c)) = candidate
-                    && c < best
-                {
-                    (best, at) = (c, to);
-                }
-            };
-            take(forward);
-            let backward = if forward.is_some_and(|(_, c)| c < base) {
-                None
-            } else {
-                cost(self, -1.0)
-            };
-            take(backward);
-            if let (Some((_, f)), Some((_, b))) = (forward, backward) {
-                // The parabola through (-1, b), (0, base) and (1, f).
-                let (f, b) = ((f - base) as f64, (b - base) as f64);
-                let t = 0.5 * (b - f) / (f + b);
-                if f + b > 0.0 && t.abs() > 0.05 && t.abs() < 0.95 {
-                    take(cost(self, t));
-                }
+        let origin = self.star.point;
+        let mut lowest = origin;
+        for axis in &basis(normal, turn)[..axes] {
+            let ways = [1.0, -1.0];
+            let costs = ways.map(|t| {
+                let to = origin + *axis * (t * length);
+                self.try_position(live, pictures, rules, to, &mut found)
+            });
+            if let [Some(f), Some(b)] = costs {
+                lowest += *axis * (lowest_of_parabola(f as f64, b as f64) * length);
             }
         }
-        if best < 0 {
-            found.better = Some((at, best));
-        }
+        self.try_position(live, pictures, rules, lowest, &mut found);
         found
+    }
+
+    /// The cost at a position, where it is allowed; remembers the best.
+    fn try_position<E: Unrender<Scratch = S>>(
+        &mut self,
+        live: &LiveMesh,
+        pictures: &Pictures<E>,
+        rules: Rules,
+        to: DVec3,
+        found: &mut Found,
+    ) -> Option<i64> {
+        let to = self.prepare(live, to, rules)?;
+        let cost = pictures.cost(live, &self.patch, &mut self.pictures);
+        found.evaluations += 1;
+        if cost < found.better.map_or(0, |(_, best)| best) {
+            found.better = Some((to, cost));
+        }
+        Some(cost)
+    }
+}
+
+/// Where the parabola through (-1, `backward`), (0, 0) and (1, `forward`) is lowest within [`REACH`].
+fn lowest_of_parabola(forward: f64, backward: f64) -> f64 {
+    let curvature = forward + backward;
+    if curvature > 0.0 {
+        (0.5 * (backward - forward) / curvature).clamp(-REACH, REACH)
+    } else if forward < backward {
+        REACH
+    } else {
+        -REACH
     }
 }
 

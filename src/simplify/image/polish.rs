@@ -189,8 +189,7 @@ impl<E: Unrender> Polisher<'_, E> {
                     &polisher.pictures,
                     polisher.rules,
                     v,
-                    step,
-                    turn,
+                    [step, turn],
                 )
             });
             let mut committed = false;
