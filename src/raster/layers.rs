@@ -25,6 +25,9 @@ const FEWEST_VIEWS: usize = 5;
 /// Most parts that the views are divided into for the sake of threads.
 const PARTS: usize = 4;
 
+/// Pixels of an evaluation from which handing half of the views to another thread pays.
+const WORTH_SHARING: usize = 4_000;
+
 /// Pictures of a mesh in all views, with all their layers.
 #[derive(Clone, Debug)]
 pub struct LayerEngine {
@@ -42,6 +45,10 @@ pub struct LayerEngine {
 pub struct LayerScratch {
     prepared: Prepared,
     parts: Vec<PartScratch>,
+    /// Nothing else runs beside: parts may be given to other threads.
+    lone: bool,
+    /// Pixels that the last evaluation went through.
+    pixels: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -269,26 +276,49 @@ impl Unrender for LayerEngine {
         LayerScratch {
             prepared: Prepared::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
+            lone: false,
+            pixels: 0,
+        }
+    }
+
+    fn lone_scratch(&self) -> LayerScratch {
+        LayerScratch {
+            lone: true,
+            ..self.scratch()
         }
     }
 
     fn evaluate(&self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
-        let LayerScratch { prepared, parts } = scratch;
-        prepared.fill(&self.model, change, self.flat);
-        let pairs = self.parts.iter().zip(parts);
-        pairs
-            .map(|(part, scratch)| part.evaluate(&self.model, change, prepared, scratch))
-            .sum()
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&Part, &mut PartScratch)| {
+            scratch.look.pixels_seen = 0;
+            part.evaluate(model, change, prepared, scratch)
+        };
+        let sum = if scratch.lone && scratch.pixels > WORTH_SHARING {
+            let pairs = self.parts.par_iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
+        scratch.pixels = scratch.parts.iter().map(|part| part.look.pixels_seen).sum();
+        sum
     }
 
     fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
-        let LayerScratch { prepared, parts } = scratch;
-        prepared.fill(&self.model, change, self.flat);
-        let (model, prepared) = (&self.model, &*prepared);
-        let pairs = self.parts.par_iter_mut().zip(parts);
-        let sum = pairs
-            .map(|(part, scratch)| part.commit(model, change, prepared, scratch))
-            .sum();
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
+            part.commit(model, change, prepared, scratch)
+        };
+        let sum = if self.parts.len() > 1 {
+            let pairs = self.parts.par_iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
         self.model.apply(change);
         sum
     }

@@ -44,8 +44,12 @@ pub(super) struct Look {
     /// After a commit: for every touched sample the triangle that it showed and the one it shows; ids above the last
     /// triangle are the background.
     pub(super) swaps: Vec<(u32, u32)>,
+    /// Pixels of all regions that were gone through; only ever counted up.
+    pub(super) pixels_seen: usize,
     pieces: Vec<Piece>,
     covered: Covered,
+    /// Columns of a row that show a triangle.
+    columns: Vec<i32>,
     /// By pixel of the picture: the change of the sum of its samples; 0 between looks.
     deltas: Vec<i32>,
     pixels: Vec<u32>,
@@ -330,8 +334,16 @@ impl LayerView {
             for y in bounds.y0..bounds.y1 {
                 let start = y as usize * self.width;
                 let row = start + bounds.x0 as usize..start + bounds.x1 as usize;
-                for (x, shown) in (bounds.x0..).zip(&self.stacks.shown()[row]) {
-                    if shown.id() != after.id || (!hidden && look.is_touched(x, y)) {
+                let shown = &self.stacks.shown()[row];
+                look.columns.resize(shown.len().max(look.columns.len()), 0);
+                let mut count = 0;
+                for (x, shown) in (bounds.x0..).zip(shown) {
+                    look.columns[count] = x;
+                    count += usize::from(shown.id() == after.id);
+                }
+                for i in 0..count {
+                    let x = look.columns[i];
+                    if !hidden && look.is_touched(x, y) {
                         continue;
                     }
                     let luma = match &whole {
@@ -393,6 +405,7 @@ impl Look {
     fn begin(&mut self, region: Region) {
         self.enter(region);
         let size = region.height() << self.shift;
+        self.pixels_seen += size;
         if self.slots.len() < size + 1 {
             self.slots.resize(size + 1, 0);
             self.touched.resize(size + 1, 0);
