@@ -3,6 +3,8 @@
 //! Evaluations run in parallel in fixed batches whose results are put together by edge id; queue and commits are
 //! serial. The result does not depend on the number of threads.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -90,6 +92,8 @@ pub struct Engine<M: Method> {
     counters: Counters,
     ring: Ring,
     scratch: M::Scratch,
+    /// Buffers of the threads that share a batch.
+    pool: Vec<(Ring, M::Scratch)>,
     patch: Patch,
     /// The edge of `ring`, where nothing was committed since it was collected.
     gathered: Option<u32>,
@@ -102,7 +106,7 @@ impl<M: Method> Engine<M> {
     /// An engine that has not evaluated anything yet.
     #[must_use]
     pub fn new(live: LiveMesh, method: M, rules: Rules, schedule: Schedule) -> Self {
-        let scratch = method.scratch();
+        let scratch = method.lone_scratch();
         Self {
             live,
             method,
@@ -113,6 +117,7 @@ impl<M: Method> Engine<M> {
             counters: Counters::default(),
             ring: Ring::default(),
             scratch,
+            pool: Vec::new(),
             patch: Patch::default(),
             gathered: None,
             changes: Changes::default(),
@@ -291,7 +296,13 @@ impl<M: Method> Engine<M> {
     /// Evaluates edges again and re-keys them.
     fn refresh(&mut self, queue: &mut Queue, ids: &[u32]) {
         self.counters.evaluations += ids.len() as u64;
-        if ids.len() <= self.method.evaluations_per_task() {
+        if ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1 {
+            let mut outcomes: Vec<_> = self.evaluate_shared(ids);
+            outcomes.sort_unstable_by_key(|(i, _)| *i);
+            for (i, outcome) in outcomes {
+                self.note(queue, ids[i], outcome);
+            }
+        } else if ids.len() <= self.method.evaluations_per_task() {
             for &id in ids {
                 let outcome = evaluate(
                     &self.live,
@@ -310,6 +321,29 @@ impl<M: Method> Engine<M> {
                 self.note(queue, id, outcome);
             }
         }
+    }
+
+    /// Evaluates a small batch on all threads: each takes the next edge when it is done with one. The outcomes, with
+    /// the index of their edge, are in no order.
+    fn evaluate_shared(&mut self, ids: &[u32]) -> Vec<(usize, Result<Proposal, Refusal>)> {
+        let (live, method, rules) = (&self.live, &self.method, self.rules);
+        let threads = rayon::current_num_threads().min(ids.len());
+        while self.pool.len() < threads {
+            self.pool.push((Ring::default(), method.scratch()));
+        }
+        let next = AtomicUsize::new(0);
+        let outcomes = self.pool[..threads].par_iter_mut().map(|(ring, scratch)| {
+            let mut outcomes = Vec::new();
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                let Some(&id) = ids.get(i) else {
+                    return outcomes;
+                };
+                outcomes.push((i, evaluate(live, method, rules, id, ring, scratch)));
+            }
+        });
+        let outcomes: Vec<Vec<_>> = outcomes.collect();
+        outcomes.into_iter().flatten().collect()
     }
 
     fn note(&mut self, queue: &mut Queue, id: u32, outcome: Result<Proposal, Refusal>) {

@@ -92,6 +92,11 @@ pub trait Method: Sync {
     /// Fresh buffers for a thread.
     fn scratch(&self) -> Self::Scratch;
 
+    /// Buffers for evaluations that nothing else runs beside: such an evaluation may use other threads itself.
+    fn lone_scratch(&self) -> Self::Scratch {
+        self.scratch()
+    }
+
     /// Places the new vertex of the site's edge and prices the collapse.
     ///
     /// # Errors
@@ -120,6 +125,11 @@ pub trait Method: Sync {
     /// [`Patch::before`], [`Patch::after`].
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         let _ = (live, patch);
+    }
+
+    /// Fewest evaluations of a batch that are worth sharing among threads one by one.
+    fn shared_batch(&self) -> usize {
+        usize::MAX
     }
 
     /// How many evaluations are worth a task of their own. Batches of at most this many stay on one thread.

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use super::{
     Change, Model, Plane, Unrender,
     lanes::{Boxes, Lanes},
-    layer_view::{Around, LayerView, Look},
+    layer_view::{Around, LayerView},
+    look::Look,
     prepare::Prepared,
 };
 use crate::view::ViewSet;
@@ -23,6 +24,9 @@ const FEWEST_VIEWS: usize = 5;
 
 /// Most parts that the views are divided into for the sake of threads.
 const PARTS: usize = 4;
+
+/// Pixels of an evaluation from which handing half of the views to another thread pays.
+const WORTH_SHARING: usize = 4_000;
 
 /// Pictures of a mesh in all views, with all their layers.
 #[derive(Clone, Debug)]
@@ -41,6 +45,10 @@ pub struct LayerEngine {
 pub struct LayerScratch {
     prepared: Prepared,
     parts: Vec<PartScratch>,
+    /// Nothing else runs beside: parts may be given to other threads.
+    lone: bool,
+    /// Pixels that the last evaluation went through.
+    pixels: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -89,8 +97,8 @@ impl Part {
                 .collect();
         }
         for (lane, view) in part.views.iter().enumerate() {
-            for &key in view.stacks.nearest() {
-                let id = key as u32 as usize;
+            for shown in view.stacks.shown() {
+                let id = shown.id() as usize;
                 if id < part.seen.len() {
                     part.counts[id * count + lane] += 1;
                     part.seen[id] |= 1 << lane;
@@ -179,7 +187,7 @@ impl Part {
             };
             sum += view.look(&around, &mut scratch.look);
             view.apply(&around, &mut scratch.look);
-            for &(before, after) in scratch.look.swaps() {
+            for &(before, after) in &scratch.look.swaps {
                 for (id, step) in [(before, u32::MAX), (after, 1)] {
                     let Some(seen) = self.seen.get_mut(id as usize) else {
                         continue; // the background
@@ -268,32 +276,55 @@ impl Unrender for LayerEngine {
         LayerScratch {
             prepared: Prepared::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
+            lone: false,
+            pixels: 0,
+        }
+    }
+
+    fn lone_scratch(&self) -> LayerScratch {
+        LayerScratch {
+            lone: true,
+            ..self.scratch()
         }
     }
 
     fn evaluate(&self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
-        let LayerScratch { prepared, parts } = scratch;
-        prepared.fill(&self.model, change, self.flat);
-        let pairs = self.parts.iter().zip(parts);
-        pairs
-            .map(|(part, scratch)| part.evaluate(&self.model, change, prepared, scratch))
-            .sum()
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&Part, &mut PartScratch)| {
+            scratch.look.pixels_seen = 0;
+            part.evaluate(model, change, prepared, scratch)
+        };
+        let sum = if scratch.lone && scratch.pixels > WORTH_SHARING {
+            let pairs = self.parts.par_iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
+        scratch.pixels = scratch.parts.iter().map(|part| part.look.pixels_seen).sum();
+        sum
     }
 
     fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
-        let LayerScratch { prepared, parts } = scratch;
-        prepared.fill(&self.model, change, self.flat);
-        let (model, prepared) = (&self.model, &*prepared);
-        let pairs = self.parts.par_iter_mut().zip(parts);
-        let sum = pairs
-            .map(|(part, scratch)| part.commit(model, change, prepared, scratch))
-            .sum();
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
+            part.commit(model, change, prepared, scratch)
+        };
+        let sum = if self.parts.len() > 1 {
+            let pairs = self.parts.par_iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
         self.model.apply(change);
         sum
     }
 
     fn luma(&self, view: usize) -> Plane<u8> {
-        self.plane(self.place(view).luma.clone())
+        self.plane(self.place(view).luma())
     }
 
     fn keys(&self, view: usize) -> Plane<u64> {

@@ -57,6 +57,13 @@ impl Unrender for BucketEngine {
     }
 
     fn scratch(&self) -> BucketScratch {
+        BucketScratch {
+            geometry: Vec::new(),
+            parts: vec![PartScratch::new(self.model.corners.len())],
+        }
+    }
+
+    fn lone_scratch(&self) -> BucketScratch {
         let parts = rayon::current_num_threads()
             .min(PARTS)
             .min(self.views.len())

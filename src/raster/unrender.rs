@@ -45,8 +45,13 @@ pub trait Unrender: Sync + Sized {
     /// [`luma_sums`](super::luma_sums)).
     fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self;
 
-    /// Room for one thread.
+    /// Room for one thread of several that evaluate at the same time.
     fn scratch(&self) -> Self::Scratch;
+
+    /// Room for evaluations that nothing else runs beside: views may then be divided among threads.
+    fn lone_scratch(&self) -> Self::Scratch {
+        self.scratch()
+    }
 
     /// What the change would add to the sum of squared differences, without making it.
     fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;

@@ -25,6 +25,11 @@ use crate::{
 /// [`Error::Interrupted`].
 pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Outcome> {
     options.check()?;
+    // From a thread of the pool, handing work to another costs a microsecond; from outside, many.
+    rayon::scope(|_| in_pool(mesh, options, progress))
+}
+
+fn in_pool(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Outcome> {
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {

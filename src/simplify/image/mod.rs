@@ -59,7 +59,7 @@ impl<E: Unrender> ImageDriven<E> {
         let pictures = Pictures::new(original, live, set);
         Self {
             limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
-            scratch: pictures.scratch(),
+            scratch: pictures.lone_scratch(),
             pictures,
             placement,
         }
@@ -88,6 +88,13 @@ impl<E: Unrender> Method for ImageDriven<E> {
         }
     }
 
+    fn lone_scratch(&self) -> Self::Scratch {
+        ImageScratch {
+            pictures: self.pictures.lone_scratch(),
+            patch: Patch::default(),
+        }
+    }
+
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
         let proposal = memoryless::propose(site, &self.placement)?;
         let ImageScratch { pictures, patch } = scratch;
@@ -106,6 +113,10 @@ impl<E: Unrender> Method for ImageDriven<E> {
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.pictures.commit(live, patch, &mut self.scratch);
+    }
+
+    fn shared_batch(&self) -> usize {
+        2
     }
 
     fn evaluations_per_task(&self) -> usize {

@@ -53,6 +53,15 @@ impl<E: Unrender> Pictures<E> {
         }
     }
 
+    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
+    #[must_use]
+    pub fn lone_scratch(&self) -> PictureScratch<E::Scratch> {
+        PictureScratch {
+            engine: self.error.engine().lone_scratch(),
+            change: ImageChange::default(),
+        }
+    }
+
     /// What the patch, not yet committed, would add to the error; negative where it makes the pictures better.
     #[must_use]
     pub fn cost(
