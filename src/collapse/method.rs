@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality};
+use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality, ring_unfolded};
 
 /// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,7 @@ impl<'a> Site<'a> {
             return Err(Refusal::Locked);
         }
         legality::shape(self.ring, position, self.rules)?;
+        ring_unfolded(self.live, self.ring, position, self.rules)?;
         Ok(Admitted(position))
     }
 

@@ -25,7 +25,7 @@ pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
 pub use flip::{flip, unmirrored};
-pub use fold::{FOLD_COSINE, unfolded};
+pub use fold::{ring_unfolded, unfolded};
 pub use heap::{Heap, Key};
 pub use history::{Entry, Header, History, Record, Recorder};
 pub use legality::{Refusal, Refusals, Rules, Topology};

@@ -515,7 +515,7 @@ fn a_flip_and_its_flip_leave_the_surface_as_it_was() {
     assert_ne!(middle, before);
     assert_eq!(live.find_edge(edge[0], edge[1]), None);
     let back = patch.reversed();
-    assert!(unfolded(&live, &back).is_ok());
+    assert!(unfolded(&live, &back, Rules::default()).is_ok());
     live.apply(&back, &mut Changes::default());
     assert_eq!(live.to_mesh().expect("valid"), before);
     assert!(live.find_edge(edge[0], edge[1]).is_some());

@@ -23,7 +23,7 @@ pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site, unfolded},
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     raster::{Scene, Unrender},
     view::ViewSet,
 };
@@ -99,7 +99,6 @@ impl<E: Unrender> Method for ImageDriven<E> {
         let proposal = memoryless::propose(site, &self.placement)?;
         let ImageScratch { pictures, patch } = scratch;
         site.patch(proposal.position, patch);
-        unfolded(site.live, patch)?;
         let image = self.pictures.cost(site.live, patch, pictures);
         Ok(Proposal { image, ..proposal })
     }

@@ -47,7 +47,7 @@ impl<S> Search<S> {
         }
         star.patch(live, to, patch);
         unmirrored(live, patch).ok()?;
-        unfolded(live, patch).ok()?;
+        unfolded(live, patch, rules).ok()?;
         Some(to)
     }
 

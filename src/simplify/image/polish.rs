@@ -321,7 +321,7 @@ impl<E: Unrender> Polisher<'_, E> {
     fn flip<'p>(&self, edge: u32, patch: &'p mut Patch) -> Option<&'p Patch> {
         let ends = self.live.edge(edge)?;
         flip(self.live, ends, self.rules, patch).ok()?;
-        unfolded(self.live, patch).ok()?;
+        unfolded(self.live, patch, self.rules).ok()?;
         Some(patch)
     }
 
