@@ -349,10 +349,15 @@ impl Observer for Recorder {
             }
             history.rows.extend_from_slice(&patch.rows);
         }
+        self.thinned(live, moved.vertex, gone, moved.to);
+    }
+
+    fn thinned(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
+        let history = &mut self.history;
         history.records.push(Collapse {
-            keep: moved.vertex,
+            keep,
             gone,
-            to: live.frame().leave(moved.to),
+            to: live.frame().leave(to),
             corners_end: history.corners.len(),
             rows_end: history.rows.len(),
         });

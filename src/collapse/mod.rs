@@ -17,6 +17,7 @@ mod patch;
 mod queue;
 mod replay;
 mod ring;
+mod tiles;
 pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
@@ -29,3 +30,4 @@ pub use patch::{Move, Patch, PatchFace};
 pub use queue::Schedule;
 pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};
+pub use tiles::{Divisible, Tiling, thin};

@@ -8,7 +8,9 @@ use super::{
 };
 use crate::{
     Error, Progress, Result,
-    collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
+    collapse::{
+        Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
+    },
     mesh::Mesh,
     raster::{BucketEngine, Model, Scene},
     view::frame_of,
@@ -34,11 +36,11 @@ pub fn simplify(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Resu
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
             let method = Memoryless::new(&run.live, *own);
-            run.phase("memoryless", method, target)?.0
+            run.thinned("memoryless", method, target)?.0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
-            run.phase("quadric", method, target)?.0
+            run.thinned("quadric", method, target)?.0
         }
         MethodOptions::Image(own) => run.image(own, target)?,
     };
@@ -74,16 +76,39 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Collapses under one method until the target or its end.
+    /// Collapses tile by tile while the mesh is large, then as a whole.
+    fn thinned<M: Divisible>(
+        &mut self,
+        name: &'static str,
+        mut method: M,
+        target: Target,
+    ) -> Result<(End, M)> {
+        let triangles_in = self.live.triangle_count();
+        let mut counters = Counters::default();
+        thin(
+            &mut self.live,
+            &mut method,
+            (self.options.rules, self.options.schedule),
+            Tiling::default(),
+            target,
+            &mut counters,
+            &mut self.recorder,
+            self.progress,
+        )?;
+        self.phase(name, method, target, (triangles_in, counters))
+    }
+
+    /// Collapses under one method until the target or its end; counts on from `before`.
     fn phase<M: Method>(
         &mut self,
         name: &'static str,
         method: M,
         target: Target,
+        (triangles_in, counters): (usize, Counters),
     ) -> Result<(End, M)> {
-        let triangles_in = self.live.triangle_count();
         let live = std::mem::take(&mut self.live);
         let mut engine = Engine::new(live, method, self.options.rules, self.options.schedule)
+            .with_counters(counters)
             .with_rank_measured(self.options.measure_rank);
         let end = engine.run(target, &mut self.recorder, self.progress);
         let (live, method, counters) = engine.into_parts();
@@ -109,7 +134,7 @@ impl<'a> Run<'a> {
                 let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
-                self.phase("memoryless", method, Target { triangles })?;
+                self.thinned("memoryless", method, Target { triangles })?;
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
@@ -134,7 +159,8 @@ impl<'a> Run<'a> {
             start,
             ..own.clone()
         });
-        let (end, method) = self.phase("image", method, target)?;
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("image", method, target, before)?;
         self.error_rms = Some(method.error().rms());
         Ok(end)
     }
