@@ -95,7 +95,7 @@ pub fn thin<M: Divisible>(
 ) -> Result<()> {
     let start = live.triangle_count();
     let total = start.saturating_sub(target.triangles) as u64;
-    for round in 0.. {
+    for round in 0_u32.. {
         let before = live.triangle_count();
         if before <= tiling.triangles.max(target.triangles) || !live.is_plain() {
             break;
@@ -211,7 +211,11 @@ fn cut(live: &LiveMesh, tiling: Tiling, round: u32) -> Vec<Cut> {
     let mut used: Vec<u32> = (0..live.vertex_ids())
         .filter(|&v| live.valence(v) > 0)
         .collect();
-    let first = if round % 2 == 0 { 0.5 } else { 1.0 / 3.0 };
+    let first = if round.is_multiple_of(2) {
+        0.5
+    } else {
+        1.0 / 3.0
+    };
     let mut boxes = Vec::new();
     split(live, &mut used, tiling.vertices, first, &mut boxes);
     let mut tile_of = vec![NONE; live.vertex_ids() as usize];
