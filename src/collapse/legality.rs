@@ -122,6 +122,13 @@ impl Refusals {
         self.0[refusal as usize] += 1;
     }
 
+    /// Adds the counts of another run.
+    pub(super) fn add_all(&mut self, other: &Self) {
+        for (own, more) in self.0.iter_mut().zip(other.0) {
+            *own += more;
+        }
+    }
+
     /// How often a rule refused.
     #[must_use]
     pub fn count(&self, refusal: Refusal) -> u64 {

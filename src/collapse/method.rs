@@ -115,6 +115,13 @@ pub trait Method: Sync {
         None
     }
 
+    /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
+    /// rose is noticed in time at the front of the queue.
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        let _ = (live, edge);
+        true
+    }
+
     /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before
     /// the limit is exceeded. The proposal may be stale (its costs were right when it was evaluated).
     fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {

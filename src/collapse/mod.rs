@@ -21,6 +21,7 @@ mod queue;
 mod replay;
 mod ring;
 mod star;
+mod tiles;
 pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
@@ -36,3 +37,4 @@ pub use queue::Schedule;
 pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};
 pub use star::{Freedom, Star};
+pub use tiles::{Divisible, Tiling, thin};

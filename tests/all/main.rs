@@ -24,6 +24,7 @@ mod raster;
 mod seams;
 mod shapes;
 mod streams;
+mod tiles;
 mod unrender;
 mod view;
 
