@@ -197,7 +197,7 @@ fn scene(
 fn by_images(amount: Amount) -> RunOptions {
     let mut options = RunOptions::image(amount);
     options.method = MethodOptions::Image(ImageOptions {
-        size: 128,
+        size: 128.into(),
         ..ImageOptions::default()
     });
     options

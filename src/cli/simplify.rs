@@ -13,13 +13,13 @@ use crate::{
     mesh::{self, content_sha256},
     simplify::{
         Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
-        image::{EngineName, ImageOptions, Preset, Start},
+        image::{DrivingShading, EngineName, ImageOptions, Polish, Preset, Size, Start},
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify, simplify_guided,
         visibility::VisibilityOptions,
     },
-    view::{Interpolation, ViewsName},
+    view::ViewsName,
 };
 
 /// Write a mesh with fewer triangles that looks the same
@@ -47,12 +47,15 @@ pub(super) struct Options {
     /// Image method: the recipe [default: default]
     #[arg(long, value_enum)]
     preset: Option<PresetName>,
-    /// Image method: dodecahedron, rhombicuboctahedron, octahedron:K, or a view file [default: dodecahedron]
+    /// Image method: dodecahedron, rhombicuboctahedron, octahedron:K, spiral:N, or a view file [default: by preset]
     #[arg(long, value_name = "SET|FILE")]
     views: Option<ViewsName>,
-    /// Image method: width and height of the driving images [default: 256]
+    /// Image method: width and height of the driving images [default: by preset]
     #[arg(long, value_name = "PIXELS")]
     size: Option<u32>,
+    /// Image method: samples per pixel along each axis of the driving images: 1, 2 or 4 [default: by preset]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
     /// Image method: the shading that the result will be seen with [default: flat]
     #[arg(long, value_enum)]
     shading: Option<ShadingName>,
@@ -62,6 +65,9 @@ pub(super) struct Options {
     /// Image method: triangles at which images take over from the memoryless method, or `none`
     #[arg(long, value_name = "N|none", value_parser = parse_start)]
     start_triangles: Option<Start>,
+    /// Image method: sweeps that move vertices and flip edges after the last collapse; 0 is none [default: by preset]
+    #[arg(long, value_name = "SWEEPS")]
+    polish: Option<u32>,
     /// Image method: how pictures follow the mesh; never changes a result
     #[arg(long, value_enum)]
     engine: Option<EngineChoice>,
@@ -122,19 +128,23 @@ enum PresetName {
     Best,
 }
 
-/// [`Interpolation`] by name.
+/// [`DrivingShading`] by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ShadingName {
     /// One intensity per triangle
     Flat,
     /// Interpolated intensities
     Gouraud,
+    /// Every other view interpolated, for a result that is seen both ways
+    Mixed,
 }
 
 /// [`EngineName`] by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum EngineChoice {
-    /// Row and column buckets
+    /// All fragments of every sample, sorted
+    Layers,
+    /// Row and column buckets: the published way, much slower
     Buckets,
 }
 
@@ -255,22 +265,26 @@ impl Options {
     }
 
     fn image(&self, preset: Preset) -> ImageOptions {
-        let default = ImageOptions {
-            preset,
-            ..ImageOptions::default()
-        };
+        let default = preset.options();
         ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
-            size: self.size.unwrap_or(default.size),
+            size: self.size.map_or(default.size, Size::Pixels),
+            samples: self.samples.unwrap_or(default.samples),
             shading: match self.shading {
                 None => default.shading,
-                Some(ShadingName::Flat) => Interpolation::Flat,
-                Some(ShadingName::Gouraud) => Interpolation::Gouraud,
+                Some(ShadingName::Flat) => DrivingShading::Flat,
+                Some(ShadingName::Gouraud) => DrivingShading::Gouraud,
+                Some(ShadingName::Mixed) => DrivingShading::Mixed,
             },
             interior_views: self.interior_views.unwrap_or(default.interior_views),
             start: self.start_triangles.unwrap_or(default.start),
+            polish: Polish {
+                sweeps: self.polish.unwrap_or(default.polish.sweeps),
+                ..default.polish
+            },
             engine: match self.engine {
                 None => default.engine,
+                Some(EngineChoice::Layers) => EngineName::Layers,
                 Some(EngineChoice::Buckets) => EngineName::Buckets,
             },
             ..default
@@ -283,9 +297,11 @@ impl Options {
             ("--preset", self.preset.is_some()),
             ("--views", self.views.is_some()),
             ("--size", self.size.is_some()),
+            ("--samples", self.samples.is_some()),
             ("--shading", self.shading.is_some()),
             ("--interior-views", self.interior_views.is_some()),
             ("--start-triangles", self.start_triangles.is_some()),
+            ("--polish", self.polish.is_some()),
             ("--engine", self.engine.is_some()),
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
@@ -310,10 +326,13 @@ impl Options {
             true,
         ) = (
             method,
-            self.size.is_some() || self.shading.is_some() || self.interior_views.is_some(),
+            self.size.is_some()
+                || self.samples.is_some()
+                || self.shading.is_some()
+                || self.interior_views.is_some(),
         ) {
             return Err(Error::Usage(format!(
-                "--size, --shading and --interior-views are part of the view file {}; leave them out",
+                "--size, --samples, --shading and --interior-views are part of the view file {}; leave them out",
                 path.display()
             )));
         }

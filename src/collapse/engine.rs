@@ -3,6 +3,9 @@
 //! Evaluations run in parallel in fixed batches whose results are put together by edge id; queue and commits are
 //! serial. The result does not depend on the number of threads.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -41,6 +44,9 @@ pub struct Counters {
     pub collapses: u64,
     /// Edges evaluated, those of rank measurements not counted.
     pub evaluations: u64,
+    /// Costs of edges that were estimated from sums.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub estimates: u64,
     /// Edges an eager queue would have evaluated for the same collapses.
     pub evaluations_if_eager: u64,
     /// How often each rule refused in an evaluation.
@@ -50,10 +56,32 @@ pub struct Counters {
     pub ranks: Vec<f64>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+impl Counters {
+    /// Adds what another run did, its ranks excepted.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.collapses += other.collapses;
+        self.evaluations += other.evaluations;
+        self.estimates += other.estimates;
+        self.evaluations_if_eager += other.evaluations_if_eager;
+        self.refusals.add_all(&other.refusals);
+    }
+}
+
 /// Watches a run: history, charts, tests.
 pub trait Observer {
     /// A patch was committed; `live` already has it.
     fn committed(&mut self, live: &LiveMesh, patch: &Patch);
+
+    /// The edge between `keep` and `gone` was collapsed to `to` (frame units) while the mesh was in tiles: its patch
+    /// is not known. Only for meshes without attributes.
+    fn thinned(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
+        let _ = (live, keep, gone, to);
+    }
 }
 
 /// Watches nothing.
@@ -82,7 +110,11 @@ pub struct Engine<M: Method> {
     counters: Counters,
     ring: Ring,
     scratch: M::Scratch,
+    /// Buffers of the threads that share a batch.
+    pool: Vec<(Ring, M::Scratch)>,
     patch: Patch,
+    /// The edge of `ring`, where nothing was committed since it was collected.
+    gathered: Option<u32>,
     changes: Changes,
     inherited: Vec<(u32, Option<Proposal>)>,
     touched: Vec<u32>,
@@ -92,7 +124,7 @@ impl<M: Method> Engine<M> {
     /// An engine that has not evaluated anything yet.
     #[must_use]
     pub fn new(live: LiveMesh, method: M, rules: Rules, schedule: Schedule) -> Self {
-        let scratch = method.scratch();
+        let scratch = method.lone_scratch();
         Self {
             live,
             method,
@@ -103,7 +135,9 @@ impl<M: Method> Engine<M> {
             counters: Counters::default(),
             ring: Ring::default(),
             scratch,
+            pool: Vec::new(),
             patch: Patch::default(),
+            gathered: None,
             changes: Changes::default(),
             inherited: Vec::new(),
             touched: Vec::new(),
@@ -114,6 +148,13 @@ impl<M: Method> Engine<M> {
     #[must_use]
     pub fn with_rank_measured(mut self, every: u64) -> Self {
         self.rank_every = every;
+        self
+    }
+
+    /// Goes on counting from what was done before.
+    #[must_use]
+    pub fn with_counters(mut self, counters: Counters) -> Self {
+        self.counters = counters;
         self
     }
 
@@ -175,13 +216,28 @@ impl<M: Method> Engine<M> {
                     let blocked = self.blocked();
                     break End::NoLegalCollapse { blocked };
                 }
-                Some(Front::Stale(id)) => self.refresh(&mut queue, &[id]),
+                Some(Front::Stale(id)) => {
+                    let estimate = if queue.is_estimated(id) {
+                        None
+                    } else {
+                        self.method.estimate(&self.live, id)
+                    };
+                    match estimate {
+                        Some(geometric) => {
+                            self.counters.estimates += 1;
+                            queue.defer(&self.live, id, geometric);
+                        }
+                        None => self.refresh(&mut queue, &[id]),
+                    }
+                }
                 Some(Front::Ready(id, proposal)) => {
                     if self.counters.collapses.is_multiple_of(REPORT_EVERY) {
                         let done = (start - self.live.triangle_count()) as u64;
                         progress.step("collapse", done, total)?;
                     }
-                    self.ring.gather(&self.live, id);
+                    if self.gathered != Some(id) {
+                        self.ring.gather(&self.live, id);
+                    }
                     let position = proposal.position.position();
                     self.ring.patch(&self.live, position, &mut self.patch);
                     if !self.method.within_limit(&self.live, &self.patch, &proposal) {
@@ -207,6 +263,7 @@ impl<M: Method> Engine<M> {
             }
         }
         self.live.apply(&self.patch, &mut self.changes);
+        self.gathered = None;
         self.counters.collapses += 1;
         self.method.committed(&self.live, &self.patch);
         observer.committed(&self.live, &self.patch);
@@ -232,20 +289,29 @@ impl<M: Method> Engine<M> {
                 continue;
             }
             for e in self.live.edges_at(v) {
-                if queue.stale(&self.live, e) {
+                if self.live.is_frozen(e) || !queue.stale(&self.live, e) {
+                    continue;
+                }
+                self.counters.evaluations_if_eager += 1;
+                let at_once = match self.schedule {
+                    Schedule::Lazy => false,
+                    Schedule::Semi => v == vertex,
+                    Schedule::Eager => v == vertex || self.method.may_fall(&self.live, e),
+                };
+                if at_once {
                     touched.push(e);
                 }
             }
         }
-        self.counters.evaluations_if_eager += touched.len() as u64;
         let live = &self.live;
-        match self.schedule {
-            Schedule::Lazy => touched.clear(),
-            Schedule::Semi => {
-                touched.retain(|&e| live.edge(e).is_some_and(|ends| ends.contains(&vertex)))
+        touched.retain(|&e| match self.method.estimate(live, e) {
+            Some(geometric) => {
+                self.counters.estimates += 1;
+                queue.expect(live, e, geometric);
+                false
             }
-            Schedule::Eager => {}
-        }
+            None => true,
+        });
         if !touched.is_empty() {
             touched.sort_unstable();
             self.refresh(queue, &touched);
@@ -256,7 +322,13 @@ impl<M: Method> Engine<M> {
     /// Evaluates edges again and re-keys them.
     fn refresh(&mut self, queue: &mut Queue, ids: &[u32]) {
         self.counters.evaluations += ids.len() as u64;
-        if ids.len() <= self.method.evaluations_per_task() {
+        if ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1 {
+            let mut outcomes: Vec<_> = self.evaluate_shared(ids);
+            outcomes.sort_unstable_by_key(|(i, _)| *i);
+            for (i, outcome) in outcomes {
+                self.note(queue, ids[i], outcome);
+            }
+        } else if ids.len() <= self.method.evaluations_per_task() {
             for &id in ids {
                 let outcome = evaluate(
                     &self.live,
@@ -266,6 +338,7 @@ impl<M: Method> Engine<M> {
                     &mut self.ring,
                     &mut self.scratch,
                 );
+                self.gathered = Some(id);
                 self.note(queue, id, outcome);
             }
         } else {
@@ -274,6 +347,29 @@ impl<M: Method> Engine<M> {
                 self.note(queue, id, outcome);
             }
         }
+    }
+
+    /// Evaluates a small batch on all threads: each takes the next edge when it is done with one. The outcomes, with
+    /// the index of their edge, are in no order.
+    fn evaluate_shared(&mut self, ids: &[u32]) -> Vec<(usize, Result<Proposal, Refusal>)> {
+        let (live, method, rules) = (&self.live, &self.method, self.rules);
+        let threads = rayon::current_num_threads().min(ids.len());
+        while self.pool.len() < threads {
+            self.pool.push((Ring::default(), method.scratch()));
+        }
+        let next = AtomicUsize::new(0);
+        let outcomes = self.pool[..threads].par_iter_mut().map(|(ring, scratch)| {
+            let mut outcomes = Vec::new();
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                let Some(&id) = ids.get(i) else {
+                    return outcomes;
+                };
+                outcomes.push((i, evaluate(live, method, rules, id, ring, scratch)));
+            }
+        });
+        let outcomes: Vec<Vec<_>> = outcomes.collect();
+        outcomes.into_iter().flatten().collect()
     }
 
     fn note(&mut self, queue: &mut Queue, id: u32, outcome: Result<Proposal, Refusal>) {
@@ -285,10 +381,11 @@ impl<M: Method> Engine<M> {
 
     /// Evaluates every edge, block by block, so that the user hears of it and can stop it.
     fn first_queue(&mut self, progress: &dyn Progress) -> Result<Queue> {
-        let ids = self.live_edges();
+        let mut ids = self.live_edges();
         let per_task = CHUNK.min(self.method.evaluations_per_task());
-        self.counters.evaluations += ids.len() as u64;
         self.counters.evaluations_if_eager += ids.len() as u64;
+        let estimated = self.estimate_all(&mut ids);
+        self.counters.evaluations += ids.len() as u64;
         let mut evaluated = Vec::with_capacity(ids.len());
         for (i, block) in ids.chunks(per_task * TASKS).enumerate() {
             let done = i * per_task * TASKS;
@@ -300,12 +397,28 @@ impl<M: Method> Engine<M> {
                 }
             }
         }
-        Ok(Queue::new(&self.live, evaluated))
+        Ok(Queue::new(&self.live, evaluated, estimated))
+    }
+
+    /// Estimates edges in parallel; those without an estimate stay in `ids`.
+    fn estimate_all(&mut self, ids: &mut Vec<u32>) -> Vec<(u32, f64)> {
+        let (live, method) = (&self.live, &self.method);
+        let estimates: Vec<Option<f64>> = ids
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&id| method.estimate(live, id))
+            .collect();
+        let pairs = ids.iter().zip(&estimates);
+        let estimated: Vec<_> = pairs.filter_map(|(&id, &e)| Some((id, e?))).collect();
+        let mut estimates = estimates.into_iter();
+        ids.retain(|_| estimates.next().flatten().is_none());
+        self.counters.estimates += estimated.len() as u64;
+        estimated
     }
 
     fn live_edges(&self) -> Vec<u32> {
         (0..self.live.edge_ids())
-            .filter(|&e| self.live.edge(e).is_some())
+            .filter(|&e| self.live.edge(e).is_some() && !self.live.is_frozen(e))
             .collect()
     }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     LiveMesh, Ring,
-    ring::{Anchor, RingFace, normal},
+    ring::{Anchor, normal},
 };
 
 /// Whether collapses may change the topology.
@@ -32,6 +32,15 @@ pub struct Rules {
     pub topology: Topology,
     /// Smallest cosine between the normals of a face before and after one collapse, in [0, 1).
     pub normal_cosine: f64,
+    /// Smallest cosine between the normals of two neighbouring faces that a change may lead to, in [-1, 1); -1 allows
+    /// any fold. Where an edge is sharper already, it may stay so.
+    #[serde(default = "no_fold")]
+    pub fold_cosine: f64,
+}
+
+/// Sharper than 143 degrees is a fold, not a feature.
+const fn no_fold() -> f64 {
+    -0.8
 }
 
 impl Default for Rules {
@@ -39,6 +48,7 @@ impl Default for Rules {
         Self {
             topology: Topology::Preserve,
             normal_cosine: 0.2,
+            fold_cosine: no_fold(),
         }
     }
 }
@@ -94,6 +104,10 @@ refusals! {
     Degenerate => "degenerate",
     /// A face would turn too far.
     Flip => "flip",
+    /// Two neighbouring faces would fold onto each other.
+    Fold => "fold",
+    /// A face would be mirrored in texture space.
+    Mirror => "mirror",
     /// The method itself refuses.
     Method => "method",
 }
@@ -106,6 +120,13 @@ impl Refusals {
     /// Counts one.
     pub fn add(&mut self, refusal: Refusal) {
         self.0[refusal as usize] += 1;
+    }
+
+    /// Adds the counts of another run.
+    pub(super) fn add_all(&mut self, other: &Self) {
+        for (own, more) in self.0.iter_mut().zip(other.0) {
+            *own += more;
+        }
     }
 
     /// How often a rule refused.
@@ -230,25 +251,39 @@ pub const DEGENERATE: f64 = 1e-7;
 /// # Errors
 /// [`Refusal::Degenerate`] or [`Refusal::Flip`].
 pub fn shape(ring: &Ring, position: DVec3, rules: Rules) -> Result<(), Refusal> {
-    let least = rules.normal_cosine * rules.normal_cosine;
     for face in ring.faces.iter().filter(|f| f.survives) {
-        let after = face.points_after(position);
-        let (old, new) = (face.normal, normal(after));
-        let new2 = new.dot(new);
-        if is_degenerate(after, new2) {
-            if !was_as_bad(face, after, new2) {
-                return Err(Refusal::Degenerate);
-            }
-            continue;
-        }
-        let old2 = old.dot(old);
-        if is_degenerate(face.points, old2) {
-            continue;
-        }
-        let cosine = old.dot(new);
-        if cosine <= 0.0 || cosine * cosine <= least * (old2 * new2) {
-            return Err(Refusal::Flip);
-        }
+        turn(face.points, face.normal, face.points_after(position), rules)?;
+    }
+    Ok(())
+}
+
+/// Tests a face that changes its shape; `old` is twice its area along its normal before.
+///
+/// # Errors
+/// [`Refusal::Degenerate`] or [`Refusal::Flip`].
+#[inline]
+pub(super) fn turn(
+    before: [DVec3; 3],
+    old: DVec3,
+    after: [DVec3; 3],
+    rules: Rules,
+) -> Result<(), Refusal> {
+    let new = normal(after);
+    let (old2, new2) = (old.dot(old), new.dot(new));
+    if is_degenerate(after, new2) {
+        return if was_as_bad(before, old2, after, new2) {
+            Ok(())
+        } else {
+            Err(Refusal::Degenerate)
+        };
+    }
+    if is_degenerate(before, old2) {
+        return Ok(());
+    }
+    let least = rules.normal_cosine * rules.normal_cosine;
+    let cosine = old.dot(new);
+    if cosine <= 0.0 || cosine * cosine <= least * (old2 * new2) {
+        return Err(Refusal::Flip);
     }
     Ok(())
 }
@@ -260,10 +295,9 @@ pub fn is_degenerate(points: [DVec3; 3], normal2: f64) -> bool {
     normal2 <= (DEGENERATE * DEGENERATE) * (side2 * side2)
 }
 
-fn was_as_bad(face: &RingFace, after: [DVec3; 3], new2: f64) -> bool {
-    let old2 = face.normal.dot(face.normal);
-    let (side_old, side_new) = (longest2(face.points), longest2(after));
-    is_degenerate(face.points, old2) && new2 * (side_old * side_old) >= old2 * (side_new * side_new)
+fn was_as_bad(before: [DVec3; 3], old2: f64, after: [DVec3; 3], new2: f64) -> bool {
+    let (side_old, side_new) = (longest2(before), longest2(after));
+    is_degenerate(before, old2) && new2 * (side_old * side_old) >= old2 * (side_new * side_new)
 }
 
 fn longest2([a, b, c]: [DVec3; 3]) -> f64 {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality};
+use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality, ring_unfolded};
 
 /// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,7 @@ impl<'a> Site<'a> {
             return Err(Refusal::Locked);
         }
         legality::shape(self.ring, position, self.rules)?;
+        ring_unfolded(self.live, self.ring, position, self.rules)?;
         Ok(Admitted(position))
     }
 
@@ -92,11 +93,34 @@ pub trait Method: Sync {
     /// Fresh buffers for a thread.
     fn scratch(&self) -> Self::Scratch;
 
+    /// Buffers for evaluations that nothing else runs beside: such an evaluation may use other threads itself.
+    fn lone_scratch(&self) -> Self::Scratch {
+        self.scratch()
+    }
+
     /// Places the new vertex of the site's edge and prices the collapse.
     ///
     /// # Errors
     /// The rule that forbids it: from [`Site::admit`], or [`Refusal::Unplaced`] or [`Refusal::Method`].
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal>;
+
+    /// What the collapse of an edge would cost if no rule forbade its best place: the second key, from sums that the
+    /// method keeps, without a look at the ring. `None` where the method has no such sums or they do not tell.
+    ///
+    /// Where it is given, an edge waits in the queue under its estimate and is proposed only when that comes to the
+    /// front; so estimates decide the order in which edges are looked at, and proposals what is collapsed. Only for
+    /// methods whose first key is always 0.
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let _ = (live, edge);
+        None
+    }
+
+    /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
+    /// rose is noticed in time at the front of the queue.
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        let _ = (live, edge);
+        true
+    }
 
     /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before
     /// the limit is exceeded. The proposal may be stale (its costs were right when it was evaluated).
@@ -109,6 +133,11 @@ pub trait Method: Sync {
     /// [`Patch::before`], [`Patch::after`].
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         let _ = (live, patch);
+    }
+
+    /// Fewest evaluations of a batch that are worth sharing among threads one by one.
+    fn shared_batch(&self) -> usize {
+        usize::MAX
     }
 
     /// How many evaluations are worth a task of their own. Batches of at most this many stay on one thread.

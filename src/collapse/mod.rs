@@ -7,8 +7,11 @@
 
 mod compact;
 mod engine;
+mod flip;
+mod fold;
 mod heap;
 mod history;
+mod history_file;
 pub mod legality;
 mod lists;
 mod live;
@@ -17,11 +20,15 @@ mod patch;
 mod queue;
 mod replay;
 mod ring;
+mod star;
+mod tiles;
 pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
+pub use flip::{flip, unmirrored};
+pub use fold::{ring_unfolded, unfolded};
 pub use heap::{Heap, Key};
-pub use history::{Collapse, Entry, Header, History, Recorder};
+pub use history::{Entry, Header, History, Record, Recorder};
 pub use legality::{Refusal, Refusals, Rules, Topology};
 pub use live::{Changes, LiveMesh, NONE};
 pub use method::{Admitted, Method, Proposal, Site};
@@ -29,3 +36,5 @@ pub use patch::{Move, Patch, PatchFace};
 pub use queue::Schedule;
 pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};
+pub use star::{Freedom, Star};
+pub use tiles::{Divisible, Tiling, thin};

@@ -29,7 +29,8 @@ pub struct Move {
     pub to: DVec3,
 }
 
-/// A local change of a [`LiveMesh`]. Buffers are reused: fill one with [`Site::patch`](super::Site::patch).
+/// A local change of a [`LiveMesh`]. Buffers are reused: fill one with [`Site::patch`](super::Site::patch),
+/// [`Patch::set_move`] or [`Patch::set_flip`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Patch {
     /// Faces as they are before, ascending ids; a face that only changes is also in `added`.
@@ -38,7 +39,8 @@ pub struct Patch {
     pub added: Vec<PatchFace>,
     /// The vertex that moves, if one does.
     pub moved: Option<Move>,
-    /// The vertex that no face uses afterwards because it became `moved.vertex`. Its old position stays readable.
+    /// The vertex that no face uses afterwards because it became `moved.vertex`: only of a collapse. Its old position
+    /// stays readable.
     pub gone: Option<u32>,
     /// Rows of values of new wedges, one after the other; the first has the id [`LiveMesh::wedge_count`] had before.
     pub rows: Vec<f64>,
@@ -53,6 +55,91 @@ impl Patch {
         self.moved = None;
         self.gone = None;
         self.rows.clear();
+    }
+
+    /// Becomes the move of a vertex to `to` (frame units, rounded to the file's precision). Its wedges stay as they are;
+    /// see [`Star::patch`](super::Star::patch) for a move that keeps textures in place.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn set_move(&mut self, live: &LiveMesh, vertex: u32, to: DVec3) {
+        self.clear();
+        let faces = live.triangles_at(vertex).map(|id| live.patch_face(id));
+        self.removed.extend(faces);
+        self.removed.sort_unstable_by_key(|f| f.id);
+        self.added.extend_from_slice(&self.removed);
+        self.moved = Some(Move {
+            vertex,
+            from: live.position(vertex),
+            to,
+        });
+    }
+
+    /// Becomes the flip of the edge between two vertices: of its two faces, `(x, y, c)` and `(y, x, d)`, the one
+    /// becomes `(x, d, c)` and the other `(y, c, d)`, in place. False, and meaningless, where the edge has not exactly
+    /// two faces that run along it in opposite directions, or there is an edge `(c, d)` already.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn set_flip(&mut self, live: &LiveMesh, ends: [u32; 2]) -> bool {
+        self.clear();
+        let at = live.triangles_at(ends[0]);
+        self.removed.extend(
+            at.filter_map(|id| live.triangle(id).map(|corners| (id, corners)))
+                .filter(|(_, corners)| corners.contains(&ends[1]))
+                .map(|(id, _)| live.patch_face(id)),
+        );
+        self.removed.sort_unstable_by_key(|f| f.id);
+        let &[f, g] = self.removed.as_slice() else {
+            return false;
+        };
+        // The corner of each face that does not belong to the edge.
+        let apex = |face: &PatchFace| face.corners.iter().position(|v| !ends.contains(v));
+        let (Some(i), Some(j)) = (apex(&f), apex(&g)) else {
+            return false;
+        };
+        let (c, d) = (f.corners[i], g.corners[j]);
+        let opposite = f.corners[(i + 1) % 3] == g.corners[(j + 2) % 3];
+        if c == d || !opposite || live.find_edge(c, d).is_some() {
+            return false;
+        }
+        for (mut face, apex, other, from) in [(f, i, g, j), (g, j, f, i)] {
+            let second = (apex + 2) % 3;
+            face.corners[second] = other.corners[from];
+            face.wedges[second] = other.wedges[from];
+            self.added.push(face);
+        }
+        true
+    }
+
+    /// What takes a patch back that moves or flips: faces and position as before. Rows that it appended stay unused.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            removed: self.added.clone(),
+            added: self.removed.clone(),
+            moved: self.moved.map(|m| Move {
+                from: m.to,
+                to: m.from,
+                ..m
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// The edge that this patch flips, the smaller end first; `None` where it is no flip.
+    #[must_use]
+    pub fn flipped(&self) -> Option<[u32; 2]> {
+        let ([f, g], [new_f, new_g], None) = (&self.removed[..], &self.added[..], self.moved)
+        else {
+            return None;
+        };
+        let lost = |old: &PatchFace, new: &PatchFace| {
+            let mut corners = old.corners.into_iter();
+            corners.find(|v| !new.corners.contains(v))
+        };
+        let (a, b) = (lost(f, new_f)?, lost(g, new_g)?);
+        Some([a.min(b), a.max(b)])
     }
 
     /// Corner positions of one of the `removed` faces, before or after the commit.

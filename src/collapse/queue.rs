@@ -26,6 +26,8 @@ struct Mark {
     dirty: bool,
     /// It is in the heap.
     queued: bool,
+    /// It waits under its present estimate.
+    estimated: bool,
 }
 
 /// Edges in the order of their keys. An illegal edge is in nobody's way: it comes back when its ring changes.
@@ -47,18 +49,34 @@ pub(super) enum Front {
 }
 
 impl Queue {
-    pub(super) fn new(live: &LiveMesh, evaluated: Vec<(u32, Proposal)>) -> Self {
+    /// A queue of edges that were evaluated, and of edges that were only estimated.
+    pub(super) fn new(
+        live: &LiveMesh,
+        evaluated: Vec<(u32, Proposal)>,
+        estimated: Vec<(u32, f64)>,
+    ) -> Self {
         let ids = live.edge_ids() as usize;
         let mut queue = Self {
             marks: vec![Mark::default(); ids],
             proposals: vec![None; ids],
             ..Self::default()
         };
-        let mut entries = Vec::with_capacity(evaluated.len());
+        let mut entries = Vec::with_capacity(evaluated.len() + estimated.len());
         for (id, proposal) in evaluated {
             if let Some(key) = key(live, id, &proposal) {
                 queue.proposals[id as usize] = Some(proposal);
                 queue.marks[id as usize].queued = true;
+                entries.push((key, id));
+            }
+        }
+        for (id, geometric) in estimated {
+            if let Some(key) = estimated_key(live, id, geometric) {
+                queue.marks[id as usize] = Mark {
+                    round: 0,
+                    dirty: true,
+                    queued: true,
+                    estimated: true,
+                };
                 entries.push((key, id));
             }
         }
@@ -80,6 +98,7 @@ impl Queue {
         self.grow(id);
         let mark = &mut self.marks[id as usize];
         mark.dirty = false;
+        mark.estimated = false;
         match proposal.and_then(|p| Some((p, key(live, id, &p)?))) {
             Some((proposal, key)) => {
                 mark.queued = true;
@@ -108,6 +127,7 @@ impl Queue {
         }
         mark.round = self.round;
         mark.dirty = true;
+        mark.estimated = false;
         if !mark.queued {
             let Some(ends) = live.edge(id) else {
                 return false;
@@ -117,6 +137,37 @@ impl Queue {
             self.heap.set(id, old.unwrap_or(Key::first(ends)));
         }
         true
+    }
+
+    /// True where a stale edge waits under its present estimate, so that it must be evaluated to know more.
+    pub(super) fn is_estimated(&self, id: u32) -> bool {
+        self.marks[id as usize].estimated
+    }
+
+    /// A stale edge costs about `geometric`. Where that is more than it waits under, it goes on waiting there: it is
+    /// estimated again at the front.
+    pub(super) fn expect(&mut self, live: &LiveMesh, id: u32, geometric: f64) {
+        self.grow(id);
+        let Some(key) = estimated_key(live, id, geometric) else {
+            return;
+        };
+        if !self.marks[id as usize].queued || self.heap.key(id).is_none_or(|old| key < old) {
+            self.wait(id, key);
+        }
+    }
+
+    /// A stale edge at the front costs about `geometric`: it goes where that belongs.
+    pub(super) fn defer(&mut self, live: &LiveMesh, id: u32, geometric: f64) {
+        if let Some(key) = estimated_key(live, id, geometric) {
+            self.wait(id, key);
+        }
+    }
+
+    fn wait(&mut self, id: u32, key: Key) {
+        let mark = &mut self.marks[id as usize];
+        mark.queued = true;
+        mark.estimated = true;
+        self.heap.set(id, key);
     }
 
     /// Forgets an edge whose id is no longer in use.
@@ -149,11 +200,18 @@ impl Queue {
 
 /// The key of a proposal for an edge; `None` where the id is not in use.
 pub(super) fn key(live: &LiveMesh, id: u32, proposal: &Proposal) -> Option<Key> {
+    Some(Key {
+        image: proposal.image,
+        ..estimated_key(live, id, proposal.geometric)?
+    })
+}
+
+fn estimated_key(live: &LiveMesh, id: u32, geometric: f64) -> Option<Key> {
     let edge = live.edge(id)?;
     let d = live.position(edge[1]) - live.position(edge[0]);
     Some(Key {
-        image: proposal.image,
-        geometric: proposal.geometric,
+        image: 0,
+        geometric,
         length2: d.dot(d),
         edge,
     })

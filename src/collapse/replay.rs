@@ -1,6 +1,10 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
+//!
+//! A level is the mesh right after a collapse and after the moves and flips recorded before the next one. A run that
+//! polishes does so after its last collapse: its own level is the polished mesh, finer ones are as the collapses left
+//! them.
 
-use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Ring};
+use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Record, Ring};
 use crate::{
     Error, Result,
     mesh::{Mesh, content_digest},
@@ -12,6 +16,8 @@ struct Undo {
     faces_end: usize,
     moved: Option<Move>,
     row_values: usize,
+    /// Triangles before the record where it is a collapse.
+    triangles_before: Option<usize>,
 }
 
 /// A mesh that moves along a history in both directions.
@@ -70,25 +76,34 @@ impl<'a> Replay<'a> {
         self.undo.len()
     }
 
-    /// Goes to the level that a direct run to `triangles` would have ended with: the first with no more triangles
-    /// than that, or the last there is. Time: proportional to the records in between.
+    /// Goes to a level: the first with no more than `triangles`, or the last there is. Without polishing it is what a
+    /// direct run to `triangles` would have ended with. Time: proportional to the records in between.
     ///
     /// # Errors
     /// [`Error::Input`] where a record does not fit the mesh.
     pub fn seek(&mut self, triangles: usize) -> Result<()> {
         while self.live.triangle_count() > triangles && self.forward()? {}
-        while let Some(undo) = self.undo.last() {
-            let start = self.faces_start();
-            let removed = &self.faces[start..undo.faces_end];
-            let dead = removed
-                .iter()
-                .filter(|f| self.live.triangle(f.id).is_none());
-            if self.live.triangle_count() + dead.count() > triangles {
-                break;
+        loop {
+            let collapses = self.undo.iter().rposition(|u| u.triangles_before.is_some());
+            match collapses.and_then(|i| Some((i, self.undo[i].triangles_before?))) {
+                Some((i, before)) if before <= triangles => {
+                    while self.undo.len() > i {
+                        self.back();
+                    }
+                }
+                _ => break,
             }
-            self.back();
+        }
+        while self.polishes_next() {
+            self.forward()?;
         }
         Ok(())
+    }
+
+    /// True where the next record belongs to the level there is.
+    fn polishes_next(&self) -> bool {
+        let next = self.history.entry(self.undo.len());
+        next.is_some_and(|entry| !matches!(entry.record, Record::Collapse { .. }))
     }
 
     /// Applies the next record; false at the end.
@@ -104,12 +119,15 @@ impl<'a> Replay<'a> {
             Error::input("-", format!("record {record} of the history {message}"))
         })?;
         let row_values = self.patch.rows.len();
+        let collapse = matches!(entry.record, Record::Collapse { .. });
+        let triangles_before = collapse.then_some(self.live.triangle_count());
         self.live.apply(&self.patch, &mut self.changes);
         self.faces.extend_from_slice(&self.patch.removed);
         self.undo.push(Undo {
             faces_end: self.faces.len(),
             moved: self.patch.moved,
             row_values,
+            triangles_before,
         });
         Ok(true)
     }
@@ -135,16 +153,34 @@ impl<'a> Replay<'a> {
     /// Makes the patch of a record, or says what is wrong with it.
     fn prepare(&mut self, entry: &Entry<'_>) -> Result<(), String> {
         let live = &self.live;
-        let (keep, gone) = (entry.collapse.keep, entry.collapse.gone);
-        let edge = (gone < live.vertex_ids())
-            .then(|| live.find_edge(keep, gone))
-            .flatten()
-            .ok_or_else(|| format!("collapses ({keep}, {gone}), which is no edge"))?;
-        self.ring.gather(live, edge);
-        let to = live
-            .round(live.frame().enter(entry.collapse.to))
-            .ok_or("moves a vertex out of range")?;
-        self.ring.patch(live, to, &mut self.patch);
+        let known = |v: u32| v < live.vertex_ids();
+        let rounded = |to| {
+            live.round(live.frame().enter(to))
+                .ok_or("moves a vertex out of range")
+        };
+        let vertex = match entry.record {
+            Record::Collapse { keep, gone, to } => {
+                let edge = known(gone).then(|| live.find_edge(keep, gone)).flatten();
+                let edge =
+                    edge.ok_or_else(|| format!("collapses ({keep}, {gone}), which is no edge"))?;
+                self.ring.gather(live, edge);
+                self.ring.patch(live, rounded(to)?, &mut self.patch);
+                keep
+            }
+            Record::Move { vertex, to } => {
+                if !known(vertex) || live.valence(vertex) == 0 {
+                    return Err(format!("moves vertex {vertex}, which is not there"));
+                }
+                self.patch.set_move(live, vertex, rounded(to)?);
+                vertex
+            }
+            Record::Flip { edge } => {
+                if !known(edge[1]) || !self.patch.set_flip(live, edge) {
+                    return Err(format!("flips {edge:?}, which is no edge that can be"));
+                }
+                return Ok(());
+            }
+        };
         let stride = self.history.header().stride as usize;
         if stride == 0 {
             return Ok(());
@@ -158,7 +194,7 @@ impl<'a> Replay<'a> {
             return Err(format!("names wedge {w}, but there are {wedges}"));
         }
         for (face, &wedge) in self.patch.added.iter_mut().zip(entry.corners) {
-            if let Some(k) = face.corners.iter().position(|&v| v == keep) {
+            if let Some(k) = face.corners.iter().position(|&v| v == vertex) {
                 face.wedges[k] = wedge;
             }
         }

@@ -80,21 +80,21 @@ impl WedgeRows {
         self.values.truncate(self.values.len() - values);
     }
 
-    fn value(&self, channel: Channel, wedge: u32) -> &[f64] {
+    pub(super) fn value(&self, channel: Channel, wedge: u32) -> &[f64] {
         &self.row(wedge)[channel.offset..][..channel.kind.width()]
     }
 
-    fn same(&self, channel: Channel, a: u32, b: u32) -> bool {
+    pub(super) fn same(&self, channel: Channel, a: u32, b: u32) -> bool {
         a == b || same_bits(self.value(channel, a), self.value(channel, b))
     }
 }
 
 /// Normals differ at almost every edge of a flat-shaded export; that alone is no feature.
-fn makes_features(kind: ChannelKind) -> bool {
+pub(super) fn makes_features(kind: ChannelKind) -> bool {
     kind != ChannelKind::Normal
 }
 
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
+pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
 }
 
@@ -108,30 +108,40 @@ pub(super) fn is_feature(live: &LiveMesh, faces: &[RingFace], ends: [u32; 2]) ->
     let Some((first, first_at)) = at.next() else {
         return false;
     };
-    let rows = live.rows();
     at.any(|(other, other_at)| {
-        if live.material(first.id) != live.material(other.id) {
-            return true;
-        }
-        let (a, b) = (live.wedges(first.id), live.wedges(other.id));
-        rows.channels
-            .iter()
-            .filter(|c| makes_features(c.kind))
-            .any(|&c| {
-                let differs = |end: usize| !rows.same(c, a[first_at[end]], b[other_at[end]]);
-                let mirrored = || {
-                    // Faces that run along the edge the same way show different sides.
-                    let forward = |at: [usize; 2]| (at[0] + 1) % 3 == at[1];
-                    let side = if forward(first_at) == forward(other_at) {
-                        -1.0
-                    } else {
-                        1.0
-                    };
-                    matches!(c.kind, ChannelKind::TexCoord(_))
-                        && side * texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
-                };
-                differs(0) || differs(1) || mirrored()
-            })
+        let faces = [first, other].map(|f| (f.id, live.wedges(f.id)));
+        differ(live, faces, [first_at, other_at], makes_features)
+    })
+}
+
+/// True where two faces, given with their wedges, differ along a common edge in their material, in the values of a
+/// channel that `counts` at either end (`at`: which corners those are, the same end first), or where one of them is
+/// mirrored in texture space.
+pub(super) fn differ(
+    live: &LiveMesh,
+    faces: [(u32, [u32; 3]); 2],
+    at: [[usize; 2]; 2],
+    counts: impl Fn(ChannelKind) -> bool,
+) -> bool {
+    let [(f, a), (g, b)] = faces;
+    if live.material(f) != live.material(g) {
+        return true;
+    }
+    let rows = live.rows();
+    rows.channels.iter().filter(|c| counts(c.kind)).any(|&c| {
+        let differs = |end: usize| !rows.same(c, a[at[0][end]], b[at[1][end]]);
+        let mirrored = || {
+            // Faces that run along the edge the same way show different sides.
+            let forward = |at: [usize; 2]| (at[0] + 1) % 3 == at[1];
+            let side = if forward(at[0]) == forward(at[1]) {
+                -1.0
+            } else {
+                1.0
+            };
+            matches!(c.kind, ChannelKind::TexCoord(_))
+                && side * texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
+        };
+        differs(0) || differs(1) || mirrored()
     })
 }
 

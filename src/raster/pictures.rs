@@ -6,6 +6,7 @@ use super::{
     Added, Change, Face, FaceGeometry, Model, Paint, Plane, Projector, Region, ScreenVertex, Setup,
     Shader,
     buckets::{Buckets, Stamps},
+    unrender::difference,
     zbuffer::EMPTY,
 };
 use crate::{
@@ -30,6 +31,8 @@ pub(super) struct ViewPictures {
     buckets: Buckets,
     pub(super) keys: Plane<u64>,
     pub(super) luma: Plane<u8>,
+    /// What the picture is compared with: the luma sums of every pixel.
+    reference: Plane<u16>,
     background: u8,
 }
 
@@ -57,7 +60,7 @@ impl PartScratch {
 }
 
 impl ViewPictures {
-    pub(super) fn new(model: &Model, view: &View, set: &ViewSet) -> Self {
+    pub(super) fn new(model: &Model, view: &View, set: &ViewSet, reference: Plane<u16>) -> Self {
         let projector = Projector::new(view, set);
         let shader = Shader::new(view);
         let image = projector.image();
@@ -86,6 +89,7 @@ impl ViewPictures {
             buckets: Buckets::new(width, height),
             keys: Plane::filled(width, height, EMPTY),
             luma: Plane::filled(width, height, set.background),
+            reference,
             background: set.background,
             projector,
         };
@@ -285,25 +289,39 @@ impl ViewPictures {
         region
     }
 
-    /// The sum over the samples of the region whose luma differs between the picture and the scratch.
-    pub(super) fn difference(
-        &self,
-        region: Region,
-        scratch: &PartScratch,
-        weigh: impl Fn(usize, u8, u8) -> i64,
-    ) -> i64 {
-        let width = region.width();
-        let mut sum = 0;
-        for (y, row) in scratch.luma.chunks_exact(width.max(1)).enumerate() {
-            let start = (region.y0 as usize + y) * self.luma.width() as usize + region.x0 as usize;
-            let now = &self.luma.values()[start..start + width];
-            for (x, (&old, &new)) in now.iter().zip(row).enumerate() {
+    /// What the scratch would add to the squared differences of the pixels that the region meets: each is summed anew.
+    pub(super) fn difference(&self, region: Region, scratch: &PartScratch) -> i64 {
+        if region.is_empty() {
+            return 0;
+        }
+        let samples = (self.luma.width() / self.reference.width()) as i32;
+        let (width, columns) = (region.width(), self.luma.width() as usize);
+        let mut total = 0;
+        for y in region.y0 / samples..=(region.y1 - 1) / samples {
+            for x in region.x0 / samples..=(region.x1 - 1) / samples {
+                let (mut old, mut new) = (0, 0);
+                for sy in y * samples..(y + 1) * samples {
+                    for sx in x * samples..(x + 1) * samples {
+                        let now = self.luma.values()[sy as usize * columns + sx as usize];
+                        let inside = (region.x0..region.x1).contains(&sx)
+                            && (region.y0..region.y1).contains(&sy);
+                        let at = |x: i32, y: i32| {
+                            (y - region.y0) as usize * width + (x - region.x0) as usize
+                        };
+                        old += u16::from(now);
+                        new += u16::from(if inside {
+                            scratch.luma[at(sx, sy)]
+                        } else {
+                            now
+                        });
+                    }
+                }
                 if old != new {
-                    sum += weigh(start + x, old, new);
+                    total += difference(self.reference.at(x as u32, y as u32), old, new);
                 }
             }
         }
-        sum
+        total
     }
 
     /// Makes the change that [`ViewPictures::redraw`] has drawn.

@@ -3,7 +3,7 @@
 /// Pixels with `x0 <= x < x1` and `y0 <= y < y1`; empty where a lower bound is not below its upper bound.
 ///
 /// A region limits loops over pixels. It never clips geometry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Region {
     /// First column.
     pub x0: i32,

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    Change, FaceGeometry, Model, Plane, Unrender, Weigh,
+    Change, FaceGeometry, Model, Plane, Unrender,
     pictures::{PartScratch, ViewPictures},
 };
 use crate::view::ViewSet;
@@ -33,17 +33,6 @@ pub struct BucketScratch {
 const PARTS: usize = 4;
 
 impl BucketEngine {
-    /// Draws the model in every view of the set.
-    #[must_use]
-    pub fn new(model: Model, set: &ViewSet) -> Self {
-        let views = set
-            .views
-            .par_iter()
-            .map(|view| ViewPictures::new(&model, view, set))
-            .collect();
-        Self { model, views }
-    }
-
     fn begin(&self, change: &Change<'_>, scratch: &mut BucketScratch) {
         scratch.geometry.clear();
         let geometry = change
@@ -57,7 +46,24 @@ impl BucketEngine {
 impl Unrender for BucketEngine {
     type Scratch = BucketScratch;
 
+    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self {
+        let views = set
+            .views
+            .par_iter()
+            .zip(reference)
+            .map(|(view, reference)| ViewPictures::new(&model, view, set, reference))
+            .collect();
+        Self { model, views }
+    }
+
     fn scratch(&self) -> BucketScratch {
+        BucketScratch {
+            geometry: Vec::new(),
+            parts: vec![PartScratch::new(self.model.corners.len())],
+        }
+    }
+
+    fn lone_scratch(&self) -> BucketScratch {
         let parts = rayon::current_num_threads()
             .min(PARTS)
             .min(self.views.len())
@@ -69,35 +75,26 @@ impl Unrender for BucketEngine {
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut BucketScratch, weigh: &Weigh<'_>) -> i64 {
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut BucketScratch) -> i64 {
         self.begin(change, scratch);
         let geometry = &scratch.geometry;
-        let views: Vec<(usize, &ViewPictures)> = self.views.iter().enumerate().collect();
-        in_parts(
-            views,
-            &mut scratch.parts,
-            &|(i, view): (usize, &ViewPictures), part| {
-                let region = view.redraw(&self.model, change, geometry, part);
-                view.difference(region, part, |at, old, new| weigh(i, at, old, new))
-            },
-        )
+        let views: Vec<&ViewPictures> = self.views.iter().collect();
+        in_parts(views, &mut scratch.parts, &|view: &ViewPictures, part| {
+            let region = view.redraw(&self.model, change, geometry, part);
+            view.difference(region, part)
+        })
     }
 
-    fn commit(
-        &mut self,
-        change: &Change<'_>,
-        scratch: &mut BucketScratch,
-        weigh: &Weigh<'_>,
-    ) -> i64 {
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut BucketScratch) -> i64 {
         self.begin(change, scratch);
         let (model, geometry) = (&self.model, &scratch.geometry);
-        let views: Vec<(usize, &mut ViewPictures)> = self.views.iter_mut().enumerate().collect();
+        let views: Vec<&mut ViewPictures> = self.views.iter_mut().collect();
         let sum = in_parts(
             views,
             &mut scratch.parts,
-            &|(i, view): (usize, &mut ViewPictures), part| {
+            &|view: &mut ViewPictures, part| {
                 let region = view.redraw(model, change, geometry, part);
-                let sum = view.difference(region, part, |at, old, new| weigh(i, at, old, new));
+                let sum = view.difference(region, part);
                 view.apply(change, geometry, region, part);
                 sum
             },
@@ -106,12 +103,12 @@ impl Unrender for BucketEngine {
         sum
     }
 
-    fn luma(&self, view: usize) -> &Plane<u8> {
-        &self.views[view].luma
+    fn luma(&self, view: usize) -> Plane<u8> {
+        self.views[view].luma.clone()
     }
 
-    fn keys(&self, view: usize) -> &Plane<u64> {
-        &self.views[view].keys
+    fn keys(&self, view: usize) -> Plane<u64> {
+        self.views[view].keys.clone()
     }
 }
 

@@ -6,8 +6,13 @@ use crate::view::{View, ViewSet};
 /// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.
 #[must_use]
 pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u16> {
-    let samples = luma(scene, view, set).tones;
-    let [sums] = sum(&samples, set.samples, |v| [v]);
+    sum_samples(&luma(scene, view, set).tones, set.samples)
+}
+
+/// Luma of every pixel as the sum of its `samples` x `samples` samples, from a picture at sample resolution.
+#[must_use]
+pub fn sum_samples(picture: &Plane<u8>, samples: u32) -> Plane<u16> {
+    let [sums] = sum(picture, samples, |v| [v]);
     sums
 }
 

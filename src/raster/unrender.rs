@@ -32,34 +32,45 @@ pub struct Change<'a> {
     pub normals: &'a [(u32, DVec3)],
 }
 
-/// What a sample's change is worth: view, index of the sample in its plane, luma before, luma after. Engines add the
-/// values of all samples that change; sums of integers have no order, so views may be looked at in parallel.
-pub type Weigh<'a> = dyn Fn(usize, usize, u8, u8) -> i64 + Sync + 'a;
-
-/// Pictures of one mesh in all views of a set, kept up to date.
-pub trait Unrender: Sync {
+/// Pictures of one mesh in all views of a set, kept up to date, and how far they are from reference pictures.
+///
+/// Differences are sums over pixels of `(y0 - y)^2`, where `y0` and `y` are the sums of the luma of the pixel's
+/// samples, in the reference and in the picture. Sums of integers have no order, so views may be looked at in
+/// parallel.
+pub trait Unrender: Sync + Sized {
     /// What one thread needs to evaluate changes.
     type Scratch: Send + Sync;
 
-    /// Room for one thread.
+    /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
+    /// [`luma_sums`](super::luma_sums)).
+    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self;
+
+    /// Room for one thread of several that evaluate at the same time.
     fn scratch(&self) -> Self::Scratch;
 
-    /// The sum over every sample that the change would alter, without making it.
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch, weigh: &Weigh<'_>) -> i64;
+    /// Room for evaluations that nothing else runs beside: views may then be divided among threads.
+    fn lone_scratch(&self) -> Self::Scratch {
+        self.scratch()
+    }
 
-    /// Makes the change and gives the sum over every sample it alters.
-    fn commit(
-        &mut self,
-        change: &Change<'_>,
-        scratch: &mut Self::Scratch,
-        weigh: &Weigh<'_>,
-    ) -> i64;
+    /// What the change would add to the sum of squared differences, without making it.
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;
 
-    /// The luma picture of a view.
-    fn luma(&self, view: usize) -> &Plane<u8>;
+    /// Makes the change and gives what it added to the sum of squared differences.
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;
 
-    /// The keys (`depth << 32 | id`) of a view.
-    fn keys(&self, view: usize) -> &Plane<u64>;
+    /// The luma of every sample of a view.
+    fn luma(&self, view: usize) -> Plane<u8>;
+
+    /// The keys (`depth << 32 | id`) of every sample of a view.
+    fn keys(&self, view: usize) -> Plane<u64>;
+}
+
+/// `(y0 - new)^2 - (y0 - old)^2`.
+#[inline]
+pub(super) fn difference(y0: u16, old: u16, new: u16) -> i64 {
+    let (y0, old, new) = (i64::from(y0), i64::from(old), i64::from(new));
+    (new - old) * (new + old - 2 * y0)
 }
 
 /// The mesh that the pictures show: what does not depend on the view.

@@ -12,8 +12,11 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::fan::Fans;
 use crate::{
-    collapse::{Admitted, BoundaryEdge, Method, Proposal, Refusal, Ring, Site},
+    collapse::{
+        Admitted, BoundaryEdge, Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site,
+    },
     num::math,
 };
 
@@ -53,9 +56,9 @@ const SIN2: f64 = 3.045_864_904_520_854_5e-4;
 
 /// A symmetric 3x3 matrix `[xx, xy, xz, yy, yz, zz]` and a vector: the gradient `H v + c` of a quadratic function.
 #[derive(Clone, Copy, Debug, Default)]
-struct Gradient {
-    h: [f64; 6],
-    c: DVec3,
+pub(super) struct Gradient {
+    pub(super) h: [f64; 6],
+    pub(super) c: DVec3,
 }
 
 impl Gradient {
@@ -102,15 +105,15 @@ impl Gradient {
     }
 }
 
-/// Up to three accepted rows `a . v = b`, each of unit length.
+/// Up to three accepted rows `a . v = b`; of unit length where `UNIT`, which only guards against overflow.
 #[derive(Clone, Copy, Debug, Default)]
-struct Constraints {
+struct Constraints<const UNIT: bool> {
     rows: [DVec3; 3],
     values: [f64; 3],
     count: usize,
 }
 
-impl Constraints {
+impl<const UNIT: bool> Constraints<UNIT> {
     /// Accepts the row where it is compatible with those before it.
     fn offer(&mut self, a: DVec3, b: f64) {
         let a2 = a.dot(a);
@@ -131,9 +134,12 @@ impl Constraints {
             _ => false,
         };
         if compatible {
-            let l = math::sqrt(a2);
-            self.rows[self.count] = a / l;
-            self.values[self.count] = b / l;
+            (self.rows[self.count], self.values[self.count]) = if UNIT {
+                let l = math::sqrt(a2);
+                (a / l, b / l)
+            } else {
+                (a, b)
+            };
             self.count += 1;
         }
     }
@@ -242,13 +248,41 @@ impl Objective {
         sums
     }
 
+    /// The sums of a ring without boundary edges, relative to the midpoint of its edge, but for the shape of triangles.
+    pub(super) fn without_boundary(
+        normal_sum: DVec3,
+        volume_sum: f64,
+        volume: Gradient,
+        volume_weight: f64,
+    ) -> Self {
+        Self {
+            origin: DVec3::ZERO,
+            normal_sum,
+            volume_sum,
+            volume,
+            boundary: None,
+            shape: Gradient::default(),
+            weights: [volume_weight, 0.0],
+            order: ConstraintOrder::default(),
+        }
+    }
+
     /// The position that the constraints determine.
     #[must_use]
     pub fn place(&self) -> Placement {
-        let mut constraints = Constraints::default();
+        self.solve::<true>()
+    }
+
+    /// As [`Objective::place`], where sums are far from the limits of doubles; faster.
+    pub(super) fn place_quickly(&self) -> Placement {
+        self.solve::<false>()
+    }
+
+    fn solve<const UNIT: bool>(&self) -> Placement {
+        let mut constraints = Constraints::<UNIT>::default();
         let mut accepted = [0; 4];
-        let keep_volume = |c: &mut Constraints| c.offer(self.normal_sum, self.volume_sum);
-        let keep_boundary = |c: &mut Constraints| {
+        let keep_volume = |c: &mut Constraints<UNIT>| c.offer(self.normal_sum, self.volume_sum);
+        let keep_boundary = |c: &mut Constraints<UNIT>| {
             if let Some(boundary) = &self.boundary {
                 let (e, m) = (boundary.edge_sum, boundary.moment_sum);
                 let mut gradient = Gradient::default();
@@ -339,11 +373,22 @@ impl Boundary {
     }
 }
 
-/// The method.
-#[derive(Clone, Copy, Debug, Default)]
+/// The method. By default it keeps no sums: every edge whose cost is wanted is looked at in full.
+#[derive(Clone, Debug, Default)]
 pub struct Memoryless {
-    /// Its options.
-    pub options: MemorylessOptions,
+    options: MemorylessOptions,
+    fans: Fans,
+}
+
+impl Memoryless {
+    /// The method on a mesh, with sums around every vertex, so that the engine can estimate costs. O(n).
+    #[must_use]
+    pub fn new(live: &LiveMesh, options: MemorylessOptions) -> Self {
+        Self {
+            options,
+            fans: Fans::of(live),
+        }
+    }
 }
 
 /// Places and prices the collapse of a site; also the placement and second key of the image-driven method.
@@ -398,5 +443,29 @@ impl Method for Memoryless {
 
     fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
         propose(site, &self.options)
+    }
+
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        self.fans.estimate(live, edge, &self.options)
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.fans.follow(live, patch);
+    }
+
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        self.fans.may_fall(live, edge)
+    }
+}
+
+impl Divisible for Memoryless {
+    fn part(&self, part: &LiveMesh, _: &[u32]) -> Self {
+        Self::new(part, self.options)
+    }
+
+    fn unite(&mut self, _: Self, _: &[u32]) {}
+
+    fn relinked(&mut self, live: &LiveMesh) {
+        self.fans = Fans::of(live);
     }
 }

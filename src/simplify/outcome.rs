@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Options;
+use super::{Options, image::PolishCounters};
 use crate::{
     collapse::{Counters, History, Refusals},
     mesh::Mesh,
@@ -49,6 +49,8 @@ pub struct Outcome {
     pub stop: Stop,
     /// What the run did, in order.
     pub phases: Vec<Phase>,
+    /// What the polishing did, where there was any.
+    pub polish: Option<PolishCounters>,
     /// The options as they were used: nothing in them is left to a default.
     pub options: Options,
     /// V(M), the visibility of the input in [0, 1]; only for the method that is guided by it.

@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
     num::math,
 };
 
@@ -312,10 +312,32 @@ impl Method for QuadricMethod {
         })
     }
 
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let [u, w] = live.edge(edge)?;
+        let sum = self.quadric(u).plus(self.quadric(w));
+        Some(sum.error(sum.place([live.position(u), live.position(w)])))
+    }
+
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
         if let (Some(moved), Some(gone)) = (patch.moved, patch.gone) {
             let sum = self.quadric(moved.vertex).plus(self.quadric(gone));
             self.quadrics[moved.vertex as usize] = sum;
         }
     }
+}
+
+impl Divisible for QuadricMethod {
+    fn part(&self, _: &LiveMesh, vertices: &[u32]) -> Self {
+        Self {
+            quadrics: vertices.iter().map(|&v| *self.quadric(v)).collect(),
+        }
+    }
+
+    fn unite(&mut self, part: Self, vertices: &[u32]) {
+        for (&v, quadric) in vertices.iter().zip(part.quadrics) {
+            self.quadrics[v as usize] = quadric;
+        }
+    }
+
+    fn relinked(&mut self, _: &LiveMesh) {}
 }

@@ -2,17 +2,19 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{ImageDriven, ImageOptions, Start},
+    image::{self, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
     memoryless::Memoryless,
     quadric::QuadricMethod,
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
     Error, Progress, Result,
-    collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
+    collapse::{
+        Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
+    },
     mesh::Mesh,
-    raster::{BucketEngine, Model, Scene},
-    view::frame_of,
+    raster::{BucketEngine, LayerEngine, Scene, Unrender},
+    view::{ViewsName, frame_of},
     visibility::{self, Visibility},
 };
 
@@ -64,6 +66,16 @@ fn start(
     progress: &dyn Progress,
 ) -> Result<Outcome> {
     options.check()?;
+    // From a thread of the pool, handing work to another costs a microsecond; from outside, many.
+    rayon::scope(|_| in_pool(mesh, options, visibility, progress))
+}
+
+fn in_pool(
+    mesh: &Mesh,
+    options: &Options,
+    visibility: Option<&Visibility>,
+    progress: &dyn Progress,
+) -> Result<Outcome> {
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {
@@ -72,14 +84,17 @@ fn start(
     let target = Target { triangles };
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
-            run.phase("memoryless", Memoryless { options: *own }, target)?
-                .0
+            let method = Memoryless::new(&run.live, *own);
+            run.thinned("memoryless", method, target)?.0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
-            run.phase("quadric", method, target)?.0
+            run.thinned("quadric", method, target)?.0
         }
-        MethodOptions::Image(own) => run.image(own, target)?,
+        MethodOptions::Image(own) => match own.engine {
+            EngineName::Layers => run.image::<LayerEngine>(own, target)?,
+            EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
+        },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
     };
     run.finish(match end {
@@ -97,6 +112,7 @@ struct Run<'a> {
     recorder: Recorder,
     phases: Vec<Phase>,
     v_mesh: Option<f64>,
+    polish: Option<PolishCounters>,
     error_rms: Option<f64>,
     progress: &'a dyn Progress,
 }
@@ -111,21 +127,45 @@ impl<'a> Run<'a> {
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
             v_mesh: None,
+            polish: None,
             error_rms: None,
             progress,
         }
     }
 
-    /// Collapses under one method until the target or its end.
+    /// Collapses tile by tile while the mesh is large, then as a whole.
+    fn thinned<M: Divisible>(
+        &mut self,
+        name: &'static str,
+        mut method: M,
+        target: Target,
+    ) -> Result<(End, M)> {
+        let triangles_in = self.live.triangle_count();
+        let mut counters = Counters::default();
+        thin(
+            &mut self.live,
+            &mut method,
+            (self.options.rules, self.options.schedule),
+            Tiling::default(),
+            target,
+            &mut counters,
+            &mut self.recorder,
+            self.progress,
+        )?;
+        self.phase(name, method, target, (triangles_in, counters))
+    }
+
+    /// Collapses under one method until the target or its end; counts on from `before`.
     fn phase<M: Method>(
         &mut self,
         name: &'static str,
         method: M,
         target: Target,
+        (triangles_in, counters): (usize, Counters),
     ) -> Result<(End, M)> {
-        let triangles_in = self.live.triangle_count();
         let live = std::mem::take(&mut self.live);
         let mut engine = Engine::new(live, method, self.options.rules, self.options.schedule)
+            .with_counters(counters)
             .with_rank_measured(self.options.measure_rank);
         let end = engine.run(target, &mut self.recorder, self.progress);
         let (live, method, counters) = engine.into_parts();
@@ -140,27 +180,26 @@ impl<'a> Run<'a> {
     }
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
-    fn image(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+    fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+        let own = &ImageOptions {
+            size: own.size.pixels(target.triangles).into(),
+            ..own.clone()
+        };
         let frame = self.live.frame();
         let original = self.mesh.enter_frame(frame);
-        let set = own.views(&original, frame)?;
-        let original = Scene::of(&original);
+        let set = own.views(&original, frame, 0)?;
+        let scene = Scene::of(&original);
         let mut start = own.start.triangles(target.triangles);
         let method = loop {
             if self.live.triangle_count() > start {
-                let method = Memoryless {
-                    options: own.placement,
-                };
+                let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
-                self.phase("memoryless", method, Target { triangles })?;
+                self.thinned("memoryless", method, Target { triangles })?;
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
-            let method =
-                ImageDriven::new(&original, &self.live, &set, own.placement, limit, |scene| {
-                    BucketEngine::new(Model::new(scene, &set), &set)
-                });
+            let method = ImageDriven::<E>::new(&scene, &self.live, &set, own.placement, limit);
             // Where an error limits the run, pre-simplification must not use up more than half of it.
             let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
             if !too_far || self.phases.is_empty() {
@@ -178,8 +217,30 @@ impl<'a> Run<'a> {
             start,
             ..own.clone()
         });
-        let (end, method) = self.phase("image", method, target)?;
-        self.error_rms = Some(method.error().rms());
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("image", method, target, before)?;
+        let mut pictures = method.into_pictures();
+        if own.polish.sweeps > 0 {
+            // The limit is one for the views that the user was told.
+            let turns =
+                self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
+            let mut fresh = |live: &LiveMesh, round: u32| {
+                let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
+                Some(Pictures::<E>::new(&scene, live, &set))
+            };
+            let counters;
+            (pictures, counters) = image::polish(
+                &mut self.live,
+                pictures,
+                own.polish,
+                self.options.rules,
+                &mut fresh,
+                &mut self.recorder,
+                self.progress,
+            )?;
+            self.polish = Some(counters);
+        }
+        self.error_rms = Some(pictures.error().rms());
         Ok(end)
     }
 
@@ -200,7 +261,8 @@ impl<'a> Run<'a> {
         };
         let method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
         self.v_mesh = Some(visibility.mesh());
-        Ok(self.phase("visibility", method, target)?.0)
+        let begin = (self.live.triangle_count(), Counters::default());
+        Ok(self.phase("visibility", method, target, begin)?.0)
     }
 
     fn finish(self, stop: Stop) -> Result<Outcome> {
@@ -215,6 +277,7 @@ impl<'a> Run<'a> {
             history: self.recorder.finish(json),
             stop,
             phases: self.phases,
+            polish: self.polish,
             options: self.options,
             v_mesh: self.v_mesh,
             error_rms: self.error_rms,

@@ -13,6 +13,13 @@ const GOLDEN: f64 = 1.618_033_988_749_895;
 const GOLDEN_INVERSE: f64 = 0.618_033_988_749_894_8;
 const SILVER: f64 = 2.414_213_562_373_095;
 
+/// 2 pi / golden ratio^2 and 2 pi (sqrt 2 - 1), rounded to nearest.
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+const SILVER_ANGLE: f64 = 2.602_580_569_572_975_4;
+
+/// Most directions of a spiral.
+pub const SPIRAL_LIMIT: u32 = 4_098;
+
 /// Most subdivisions of the octahedron: 4,098 directions.
 pub const OCTAHEDRON_LIMIT: u32 = 5;
 
@@ -51,6 +58,41 @@ pub fn dodecahedron() -> Vec<DVec3> {
 #[must_use]
 pub fn rhombicuboctahedron() -> Vec<DVec3> {
     units(&[[SILVER, 1.0, 1.0], [1.0, SILVER, 1.0], [1.0, 1.0, SILVER]])
+}
+
+/// `count` directions spread evenly along a spiral (spherical Fibonacci points; Swinbank & Purser 2006): all stand for
+/// nearly the same share of the sphere, and no two look along one axis.
+#[must_use]
+pub fn spiral(count: u32) -> Vec<DVec3> {
+    let point = |i: u32| {
+        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+        let r = math::sqrt(1.0 - z * z);
+        let angle = GOLDEN_ANGLE * f64::from(i);
+        DVec3::new(r * math::cos(angle), r * math::sin(angle), z)
+    };
+    (0..count).map(point).collect()
+}
+
+/// `directions` turned as a whole; every `round` another way, 0 not at all.
+///
+/// About z by the golden angle and about x by the share `sqrt(2) - 1` of a circle, `round` times each: no two rounds
+/// look from the same side.
+#[must_use]
+pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
+    if round == 0 {
+        return directions.to_vec();
+    }
+    let (a, b) = (
+        GOLDEN_ANGLE * f64::from(round),
+        SILVER_ANGLE * f64::from(round),
+    );
+    let ((sin_a, cos_a), (sin_b, cos_b)) =
+        ((math::sin(a), math::cos(a)), (math::sin(b), math::cos(b)));
+    let turn = |d: &DVec3| {
+        let (x, y) = (cos_a * d.x - sin_a * d.y, sin_a * d.x + cos_a * d.y);
+        DVec3::new(x, cos_b * y - sin_b * d.z, sin_b * y + cos_b * d.z)
+    };
+    directions.iter().map(turn).collect()
 }
 
 /// The vertices of the octahedron subdivided `k` times; those of `k - 1` come first, in the same order.

@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::{
     Cull, Projection, Shading, Sphere, View, ViewSet,
-    directions::{OCTAHEDRON_LIMIT, dodecahedron, octahedron, rhombicuboctahedron},
+    directions::{
+        OCTAHEDRON_LIMIT, SPIRAL_LIMIT, dodecahedron, octahedron, rhombicuboctahedron, spiral,
+    },
     file,
 };
 use crate::{Error, Result, num::fixed::SubpixelBits};
@@ -175,7 +177,7 @@ impl ViewSet {
     }
 }
 
-/// The value of `--views`: `dodecahedron`, `rhombicuboctahedron`, `octahedron:K` or a view file.
+/// The value of `--views`: `dodecahedron`, `rhombicuboctahedron`, `octahedron:K`, `spiral:N` or a view file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ViewsName {
     /// 20 directions.
@@ -184,6 +186,8 @@ pub enum ViewsName {
     Rhombicuboctahedron,
     /// 4^(k+1) + 2 directions, k at most [`OCTAHEDRON_LIMIT`].
     Octahedron(u32),
+    /// This many directions along a spiral, 1 to [`SPIRAL_LIMIT`].
+    Spiral(u32),
     /// The views in a JSON file; see [`mod@file`].
     File(PathBuf),
 }
@@ -196,6 +200,7 @@ impl ViewsName {
             Self::Dodecahedron => Some(dodecahedron()),
             Self::Rhombicuboctahedron => Some(rhombicuboctahedron()),
             Self::Octahedron(k) => Some(octahedron(*k)),
+            Self::Spiral(n) => Some(spiral(*n)),
             Self::File(_) => None,
         }
     }
@@ -207,6 +212,7 @@ impl fmt::Display for ViewsName {
             Self::Dodecahedron => f.write_str("dodecahedron"),
             Self::Rhombicuboctahedron => f.write_str("rhombicuboctahedron"),
             Self::Octahedron(k) => write!(f, "octahedron:{k}"),
+            Self::Spiral(n) => write!(f, "spiral:{n}"),
             Self::File(path) => write!(f, "{}", path.display()),
         }
     }
@@ -220,7 +226,7 @@ impl FromStr for ViewsName {
         let refused = |what: String| {
             Error::Usage(format!(
                 "{what}; expected dodecahedron, rhombicuboctahedron, octahedron:K with K from 0 to \
-                 {OCTAHEDRON_LIMIT}, or a view file such as views.json"
+                 {OCTAHEDRON_LIMIT}, spiral:N with N from 1 to {SPIRAL_LIMIT}, or a view file such as views.json"
             ))
         };
         match text {
@@ -231,6 +237,12 @@ impl FromStr for ViewsName {
                     return match k.parse() {
                         Ok(k) if k <= OCTAHEDRON_LIMIT => Ok(Self::Octahedron(k)),
                         _ => Err(refused(format!("octahedron:K with K = `{k}`"))),
+                    };
+                }
+                if let Some(n) = text.strip_prefix("spiral:") {
+                    return match n.parse() {
+                        Ok(n) if (1..=SPIRAL_LIMIT).contains(&n) => Ok(Self::Spiral(n)),
+                        _ => Err(refused(format!("spiral:N with N = `{n}`"))),
                     };
                 }
                 if text.contains(['.', '/', '\\']) {

@@ -18,7 +18,6 @@ mod counts;
 mod hidden;
 mod measure;
 mod options;
-mod picture;
 pub mod rays;
 mod sight;
 mod subdivide;

@@ -8,7 +8,7 @@ use lodmark::{
         Topology,
     },
     mesh::{Mesh, canonical, generate},
-    raster::{self, BucketEngine, Model, Scene},
+    raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
         image::{ImageDriven, ImageOptions, Start},
@@ -54,18 +54,17 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
         set,
         MemorylessOptions::default(),
         None,
-        |scene| BucketEngine::new(Model::new(scene, set), set),
     );
     Watched { inner, last: None }
 }
 
 /// Sum of squared luma differences, by drawing everything.
-fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
+pub(crate) fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
     let (a, b) = (Scene::of(original), Scene::of(current));
     let view = |view: &View| -> i64 {
         let (x, y) = (
-            raster::luma(&a, view, set).tones,
-            raster::luma(&b, view, set).tones,
+            raster::luma_sums(&a, view, set),
+            raster::luma_sums(&b, view, set),
         );
         x.values()
             .iter()
@@ -77,7 +76,7 @@ fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
 }
 
 /// Meshes with everything that makes surgery hard.
-fn meshes() -> Vec<(&'static str, Mesh)> {
+pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
     let mesh = |positions: &[[f64; 3]], triangles: Vec<[u32; 3]>| {
         let positions = positions.iter().map(|&p| DVec3::from_array(p)).collect();
         Mesh::from_triangles(positions, triangles).expect("valid")
@@ -128,7 +127,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
+pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
     let around = |projection| {
         let directions: Vec<DVec3> = dodecahedron().into_iter().step_by(5).collect();
         ViewSet::around(sphere, &directions, 40, 32, projection).expect("views")
@@ -185,8 +184,11 @@ fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
         ("orthographic", around(Projection::Orthographic)),
         (
             "16 bits",
-            outside.with_subpixel(lodmark::num::fixed::SubpixelBits::Sixteen),
+            outside
+                .clone()
+                .with_subpixel(lodmark::num::fixed::SubpixelBits::Sixteen),
         ),
+        ("2 x 2 samples", outside.with_samples(2).expect("small")),
         ("inside, near-clipped", inside),
     ]
 }
@@ -234,7 +236,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
-                        fresh.tones == *raster::Unrender::luma(pictures.engine(), i),
+                        fresh.tones == raster::Unrender::luma(pictures.engine(), i),
                         "{mesh_name}, {view_name}"
                     );
                 }
@@ -335,7 +337,7 @@ impl lodmark::collapse::Observer for Taken {
 fn options(triangles: u64) -> Options {
     let mut options = Options::image(Amount::Triangles(triangles));
     options.method = MethodOptions::Image(ImageOptions {
-        size: 64,
+        size: 64.into(),
         ..ImageOptions::default()
     });
     options
@@ -380,7 +382,7 @@ fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
     let started = |triangles, start| {
         let mut options = options(triangles);
         options.method = MethodOptions::Image(ImageOptions {
-            size: 32,
+            size: 32.into(),
             start: Start::Triangles(start),
             ..ImageOptions::default()
         });

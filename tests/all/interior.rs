@@ -9,7 +9,7 @@ use lodmark::{
     raster::Scene,
     simplify::{
         Amount, MethodOptions, Options,
-        image::{ImageOptions, Start},
+        image::{ImageOptions, Size, Start},
         simplify,
     },
     view::{Cull, Projection, Sphere, ViewSet, directions::rhombicuboctahedron, frame_of},
@@ -22,7 +22,7 @@ fn results() -> &'static (Mesh, [Mesh; 3]) {
         let mesh = canonical(&generate::encased(1)).mesh;
         let reduced = [0, 10, 20].map(|interior_views| {
             let own = ImageOptions {
-                size: 48,
+                size: Size::Pixels(48),
                 start: Start::Input,
                 interior_views,
                 ..ImageOptions::default()

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
-    raster::{self, Added, BucketEngine, Change, Model, Scene, Unrender},
+    raster::{self, Added, BucketEngine, Change, LayerEngine, Model, Plane, Scene, Unrender},
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
 use proptest::prelude::*;
@@ -158,14 +158,17 @@ fn view() -> impl Strategy<Value = View> {
 
 fn views() -> impl Strategy<Value = ViewSet> {
     let bits = prop_oneof![Just(SubpixelBits::Eight), Just(SubpixelBits::Sixteen)];
-    (proptest::collection::vec(view(), 1..4), bits).prop_map(|(views, subpixel)| ViewSet {
-        width: 32,
-        height: 24,
-        samples: 1,
-        subpixel,
-        background: 128,
-        views,
-    })
+    let samples = prop_oneof![2 => Just(1), 1 => Just(2), 1 => Just(4)];
+    (proptest::collection::vec(view(), 1..4), bits, samples).prop_map(
+        |(views, subpixel, samples)| ViewSet {
+            width: 32 / samples,
+            height: 24 / samples,
+            samples,
+            subpixel,
+            background: 128,
+            views,
+        },
+    )
 }
 
 /// The mesh after a step, and the step as the engines see it: everything that differs, found by comparing.
@@ -259,10 +262,11 @@ proptest! {
         steps in proptest::collection::vec(step(), 1..12),
     ) {
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
-        let reference: Vec<Vec<u8>> =
-            set.views.iter().map(|v| raster::luma(&start.scene(), v, &set).tones.values().to_vec()).collect();
-        let mut engine = BucketEngine::new(Model::new(&start.scene(), &set), &set);
-        let mut scratch = engine.scratch();
+        let reference: Vec<Plane<u16>> =
+            set.views.iter().map(|v| raster::luma_sums(&start.scene(), v, &set)).collect();
+        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut scratches = (buckets.scratch(), layers.scratch());
         let mut now = start;
         let mut error = 0_i64;
         for step in &steps {
@@ -270,21 +274,25 @@ proptest! {
             let d = difference(&now, &after, gouraud);
             let change =
                 Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
-            let square = |y0: u8, y: u8| (i64::from(y0) - i64::from(y)).pow(2);
-            let weigh = |view: usize, at: usize, old: u8, new: u8| {
-                square(reference[view][at], new) - square(reference[view][at], old)
-            };
-            let cost = engine.evaluate(&change, &mut scratch, &weigh);
-            let committed = engine.commit(&change, &mut scratch, &weigh);
-            prop_assert_eq!(cost, committed);
+            let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
+            let costs = [
+                buckets.evaluate(&change, &mut scratches.0),
+                layers.evaluate(&change, &mut scratches.1),
+            ];
+            let committed = buckets.commit(&change, &mut scratches.0);
+            prop_assert_eq!(layers.commit(&change, &mut scratches.1), committed);
+            prop_assert_eq!(costs, [committed; 2]);
             error += committed;
             let mut scratch_error = 0;
             for (i, view) in set.views.iter().enumerate() {
                 let fresh = raster::luma(&after.scene(), view, &set);
-                prop_assert_eq!(fresh.keys.values(), engine.keys(i).values());
-                prop_assert_eq!(fresh.tones.values(), engine.luma(i).values());
+                prop_assert_eq!(&fresh.keys, &buckets.keys(i));
+                prop_assert_eq!(&fresh.keys, &layers.keys(i));
+                prop_assert_eq!(&fresh.tones, &buckets.luma(i));
+                prop_assert_eq!(&fresh.tones, &layers.luma(i));
+                let sums = raster::luma_sums(&after.scene(), view, &set);
                 scratch_error +=
-                    fresh.tones.values().iter().zip(&reference[i]).map(|(&y, &y0)| square(y0, y)).sum::<i64>();
+                    sums.values().iter().zip(reference[i].values()).map(|(&y, &y0)| square(y0, y)).sum::<i64>();
             }
             prop_assert_eq!(error, scratch_error);
             now = after;

@@ -11,7 +11,7 @@ use crate::{
     raster::{Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Replay,
-        image::{ImageOptions, Start},
+        image::{ImageOptions, Size, Start},
         quadric::QuadricOptions,
         simplify,
         visibility::VisibilityOptions,
@@ -71,7 +71,7 @@ fn interiors(collector: &mut Collector) -> Result<()> {
     let mut meshes = vec![mesh.clone()];
     for interior_views in [0, 10, 20] {
         let own = ImageOptions {
-            size: 64,
+            size: Size::Pixels(64),
             start: Start::Input,
             interior_views,
             ..ImageOptions::default()

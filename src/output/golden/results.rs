@@ -16,7 +16,7 @@ use crate::{
     raster::{Plane, Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Outcome, Replay,
-        image::{ImageOptions, Start},
+        image::{DrivingShading, ImageOptions, Start},
         quadric::QuadricOptions,
         simplify,
     },
@@ -64,12 +64,12 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     }
     let small = ImageOptions {
         views: ViewsName::Octahedron(0),
-        size: 64,
+        size: 64.into(),
         start: Start::Input,
         ..ImageOptions::default()
     };
     let gouraud = ImageOptions {
-        shading: Interpolation::Gouraud,
+        shading: DrivingShading::Gouraud,
         ..small.clone()
     };
     let interior = ImageOptions {
@@ -82,7 +82,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     };
     // Every driving view of the published method, after memoryless pre-simplification.
     let published = ImageOptions {
-        size: 64,
+        size: 64.into(),
         start: Start::Triangles(180),
         ..ImageOptions::default()
     };
@@ -128,7 +128,7 @@ fn side_by_side(collector: &mut Collector) -> Result<()> {
     let mesh = canonical(&generate::interlocking_tori(32, 32)).mesh;
     let target = Amount::Triangles(260);
     let driving = ImageOptions {
-        size: 128,
+        size: 128.into(),
         start: Start::Triangles(1_040),
         ..ImageOptions::default()
     };
@@ -166,7 +166,7 @@ fn side_by_side(collector: &mut Collector) -> Result<()> {
 pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
     let own = ImageOptions {
         views: ViewsName::Octahedron(0),
-        size: 48,
+        size: 48.into(),
         start: Start::Triangles(200),
         ..ImageOptions::default()
     };

@@ -4,48 +4,58 @@ use rayon::prelude::*;
 
 use crate::{
     num::math::sqrt,
-    raster::{self, Change, Plane, Scene, Unrender},
+    raster::{self, Change, Model, Plane, Scene, Unrender},
     view::ViewSet,
 };
 
 /// The pictures of the original, those of the current mesh, and the sum of their squared luma differences.
 ///
+/// A pixel with `samples` x `samples` samples is the integer sum of them, and the difference is squared per pixel: the
+/// unit of sums and costs is `(1 / samples^2)^2` squared levels, one squared level where there is one sample.
 /// The sum is never taken from a cost that was computed earlier: every commit adds its own difference.
 #[derive(Clone, Debug)]
 pub struct ImageError<E> {
-    reference: Vec<Plane<u8>>,
     engine: E,
     sum: u64,
+    /// Pixels of all views.
+    pixels: u64,
+    /// Samples in a pixel.
+    samples: u32,
 }
 
 impl<E: Unrender> ImageError<E> {
-    /// Compares the pictures in `engine`, which shows `current`, with those of `original`.
+    /// Draws `original` and `current` in the views of `set` and compares them.
     #[must_use]
-    pub fn new(original: &Scene, current: &Scene, set: &ViewSet, engine: E) -> Self {
-        debug_assert!(
-            set.views
-                .iter()
-                .enumerate()
-                .all(|(i, view)| { raster::luma(current, view, set).tones == *engine.luma(i) }),
-            "the engine shows the current mesh"
-        );
-        let reference: Vec<Plane<u8>> = set
+    pub fn new(original: &Scene, current: &Scene, set: &ViewSet) -> Self {
+        let reference: Vec<Plane<u16>> = set
             .views
             .par_iter()
-            .map(|view| raster::luma(original, view, set).tones)
+            .map(|view| raster::luma_sums(original, view, set))
             .collect();
-        let differences = reference.iter().enumerate().map(|(i, y0)| {
-            let pairs = y0.values().iter().zip(engine.luma(i).values());
-            pairs.map(|(&a, &b)| square(a, b) as u64).sum::<u64>()
-        });
-        Self {
-            sum: differences.sum(),
-            reference,
+        let engine = E::new(Model::new(current, set), set, reference.clone());
+        let mut error = Self {
             engine,
-        }
+            sum: 0,
+            pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
+            samples: set.samples * set.samples,
+        };
+        error.sum = error.sum_from_scratch(&reference, set.samples);
+        error
     }
 
-    /// Sum over views and pixels of the squared luma differences, in squared levels.
+    /// The sum of squared differences between the engine's pictures and the luma sums in `reference`.
+    fn sum_from_scratch(&self, reference: &[Plane<u16>], samples: u32) -> u64 {
+        let view = |(i, y0): (usize, &Plane<u16>)| {
+            let sums = raster::sum_samples(&self.engine.luma(i), samples);
+            let pairs = y0.values().iter().zip(sums.values());
+            pairs
+                .map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2))
+                .sum::<u64>()
+        };
+        reference.iter().enumerate().map(view).sum()
+    }
+
+    /// Sum over views and pixels of the squared luma differences, in squared levels over `samples^4`.
     #[must_use]
     pub fn sum(&self) -> u64 {
         self.sum
@@ -54,8 +64,14 @@ impl<E: Unrender> ImageError<E> {
     /// Root mean square of the differences over all views, in levels (equation 2).
     #[must_use]
     pub fn rms(&self) -> f64 {
-        let pixels: usize = self.reference.iter().map(|p| p.values().len()).sum();
-        sqrt(self.sum as f64 / pixels.max(1) as f64)
+        sqrt(self.sum as f64 / self.pixels.max(1) as f64) / f64::from(self.samples)
+    }
+
+    /// The sum that a root mean square in levels stands for.
+    #[must_use]
+    pub fn sum_of_rms(&self, rms: f64) -> f64 {
+        let sum = rms * f64::from(self.samples);
+        sum * sum * self.pixels as f64
     }
 
     /// The engine that keeps the pictures.
@@ -73,32 +89,13 @@ impl<E: Unrender> ImageError<E> {
     /// What the change would add to the sum; negative where it makes the pictures better.
     #[must_use]
     pub fn cost(&self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
-        self.engine
-            .evaluate(change, scratch, &|view, at, old, new| {
-                difference(&self.reference[view], at, old, new)
-            })
+        self.engine.evaluate(change, scratch)
     }
 
     /// Makes the change and returns what it added to the sum.
     pub fn commit(&mut self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
-        let reference = &self.reference;
-        let cost = self.engine.commit(change, scratch, &|view, at, old, new| {
-            difference(&reference[view], at, old, new)
-        });
+        let cost = self.engine.commit(change, scratch);
         self.sum = self.sum.wrapping_add_signed(cost);
         cost
     }
-}
-
-/// `(y0 - new)^2 - (y0 - old)^2` at one pixel.
-#[inline]
-fn difference(reference: &Plane<u8>, at: usize, old: u8, new: u8) -> i64 {
-    let y0 = reference.values()[at];
-    square(y0, new) - square(y0, old)
-}
-
-#[inline]
-fn square(a: u8, b: u8) -> i64 {
-    let d = i64::from(a) - i64::from(b);
-    d * d
 }

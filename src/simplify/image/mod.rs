@@ -8,45 +8,46 @@
 
 mod change;
 mod cost;
+mod moves;
 mod options;
+mod pictures;
+mod polish;
+mod preset;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
-pub use options::{EngineName, ImageOptions, Preset, Start};
+pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
+pub use pictures::{PictureScratch, Pictures};
+pub use polish::{Polish, PolishCounters, polish};
+pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     raster::{Scene, Unrender},
-    view::{Interpolation, ViewSet},
+    view::ViewSet,
 };
 
 /// The method: pictures of the mesh as it is, and how far they are from those of the original.
 #[derive(Debug)]
 pub struct ImageDriven<E: Unrender> {
-    error: ImageError<E>,
-    slots: change::Slots,
-    gouraud: bool,
+    pictures: Pictures<E>,
     placement: MemorylessOptions,
     /// Largest sum of squared differences that a collapse may lead to.
     limit: Option<f64>,
-    scratch: ImageScratch<E::Scratch>,
+    scratch: PictureScratch<E::Scratch>,
 }
 
 /// Buffers of one thread.
 #[derive(Debug)]
 pub struct ImageScratch<S> {
-    engine: S,
+    pictures: PictureScratch<S>,
     patch: Patch,
-    change: ImageChange,
 }
 
 impl<E: Unrender> ImageDriven<E> {
     /// Prepares the pictures of `live` in the views of `set`, to be compared with those of `original` (in the same
-    /// frame). `build` makes the un-rendering engine. `rms_limit` ends the run before the root mean square of the
-    /// luma differences over all views exceeds it.
-    ///
-    /// Memory: the engine's, plus a byte per pixel and view.
+    /// frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
     pub fn new(
         original: &Scene,
@@ -54,33 +55,26 @@ impl<E: Unrender> ImageDriven<E> {
         set: &ViewSet,
         placement: MemorylessOptions,
         rms_limit: Option<f64>,
-        build: impl FnOnce(&Scene) -> E,
     ) -> Self {
-        let (slots, scene) = change::Slots::of(live);
-        let error = ImageError::new(original, &scene, set, build(&scene));
-        let pixels = (set.views.len() as f64) * f64::from(set.width) * f64::from(set.height);
-        let scratch = ImageScratch {
-            engine: error.scratch(),
-            patch: Patch::default(),
-            change: ImageChange::default(),
-        };
+        let pictures = Pictures::new(original, live, set);
         Self {
-            gouraud: set
-                .views
-                .iter()
-                .any(|v| v.shading.interpolation == Interpolation::Gouraud),
-            limit: rms_limit.map(|rms| rms * rms * pixels),
-            error,
-            slots,
+            limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
+            scratch: pictures.lone_scratch(),
+            pictures,
             placement,
-            scratch,
         }
     }
 
     /// The pictures and their distance from the original's.
     #[must_use]
     pub fn error(&self) -> &ImageError<E> {
-        &self.error
+        self.pictures.error()
+    }
+
+    /// The pictures, which show the mesh as the run left it.
+    #[must_use]
+    pub fn into_pictures(self) -> Pictures<E> {
+        self.pictures
     }
 }
 
@@ -89,37 +83,39 @@ impl<E: Unrender> Method for ImageDriven<E> {
 
     fn scratch(&self) -> Self::Scratch {
         ImageScratch {
-            engine: self.error.scratch(),
+            pictures: self.pictures.scratch(),
             patch: Patch::default(),
-            change: ImageChange::default(),
+        }
+    }
+
+    fn lone_scratch(&self) -> Self::Scratch {
+        ImageScratch {
+            pictures: self.pictures.lone_scratch(),
+            patch: Patch::default(),
         }
     }
 
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
         let proposal = memoryless::propose(site, &self.placement)?;
-        site.patch(proposal.position, &mut scratch.patch);
-        scratch
-            .change
-            .fill(&self.slots, site.live, &scratch.patch, self.gouraud);
-        let image = self
-            .error
-            .cost(&scratch.change.as_change(), &mut scratch.engine);
+        let ImageScratch { pictures, patch } = scratch;
+        site.patch(proposal.position, patch);
+        let image = self.pictures.cost(site.live, patch, pictures);
         Ok(Proposal { image, ..proposal })
     }
 
     fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
         let Some(limit) = self.limit else { return true };
         // The proposal's cost may be stale: ask again.
-        let ImageScratch { engine, change, .. } = &mut self.scratch;
-        change.fill(&self.slots, live, patch, self.gouraud);
-        let cost = self.error.cost(&change.as_change(), engine);
-        (self.error.sum() as i64 + cost) as f64 <= limit
+        let cost = self.pictures.cost(live, patch, &mut self.scratch);
+        (self.pictures.error().sum() as i64 + cost) as f64 <= limit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
-        let ImageScratch { engine, change, .. } = &mut self.scratch;
-        change.fill(&self.slots, live, patch, self.gouraud);
-        self.error.commit(&change.as_change(), engine);
+        self.pictures.commit(live, patch, &mut self.scratch);
+    }
+
+    fn shared_batch(&self) -> usize {
+        2
     }
 
     fn evaluations_per_task(&self) -> usize {

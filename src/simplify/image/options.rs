@@ -1,19 +1,21 @@
-//! Options of the image-driven method, and the presets that set several at once.
+//! Options of the image-driven method.
 
-use std::{fmt, str::FromStr};
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::memoryless::MemorylessOptions;
+use super::{super::memoryless::MemorylessOptions, Polish, Preset};
 use crate::{
     Error, Result,
-    collapse::Schedule,
     mesh::Mesh,
     num::Frame,
-    view::{self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName},
+    view::{
+        self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName,
+        directions::turned,
+    },
 };
 
-/// Most pixels of all driving images together; every one takes some ten bytes throughout the run.
+/// Most samples of all driving images together; every one takes some ten bytes throughout the run.
 const PIXEL_LIMIT: u64 = 1 << 27;
 
 /// Where the image-driven part of a run begins; the memoryless method gets there.
@@ -24,6 +26,8 @@ pub enum Start {
     /// times, as there for the dragon; 65,536 where only an error limits the run (or the target is 1).
     #[default]
     Auto,
+    /// So many times the target; as `Auto` where only an error limits the run (or the target is 1).
+    Times(u32),
     /// At this number of triangles.
     Triangles(u64),
     /// At the input itself.
@@ -35,7 +39,8 @@ impl Start {
     #[must_use]
     pub fn triangles(self, target: usize) -> usize {
         match self {
-            Self::Auto if target <= 1 => 65_536,
+            Self::Auto | Self::Times(_) if target <= 1 => 65_536,
+            Self::Times(n) => target.saturating_mul(n as usize),
             Self::Auto => target
                 .saturating_mul(10)
                 .min(target.saturating_mul(4).max(32_768)),
@@ -45,27 +50,82 @@ impl Start {
     }
 }
 
-/// A recipe. Until better ones land, all are the published method, but for the schedule of evaluations.
+/// Width and height of the driving images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Size {
+    /// So many pixels, 1 to 4096.
+    Pixels(u32),
+    /// So many pixels for every triangle of the target, on average over the whole square; a multiple of 8 from
+    /// [`Size::LEAST`] to [`Size::MOST`] along each side.
+    PerTriangle {
+        /// Pixels of the square for a triangle.
+        per_triangle: u32,
+    },
+}
+
+impl Size {
+    /// Smallest side that follows from the target.
+    pub const LEAST: u32 = 96;
+
+    /// Largest side that follows from the target, and what stands for no target.
+    pub const MOST: u32 = 256;
+
+    /// The side in pixels for a target; a target of 1 means none.
+    #[must_use]
+    pub fn pixels(self, target: usize) -> u32 {
+        match self {
+            Self::Pixels(n) => n,
+            Self::PerTriangle { .. } if target <= 1 => Self::MOST,
+            Self::PerTriangle { per_triangle } => {
+                let area = u64::from(per_triangle).saturating_mul(target as u64);
+                let side = area.min(u64::from(Self::MOST).pow(2)).isqrt() as u32;
+                (side / 8 * 8).clamp(Self::LEAST, Self::MOST)
+            }
+        }
+    }
+}
+
+impl From<u32> for Size {
+    fn from(pixels: u32) -> Self {
+        Self::Pixels(pixels)
+    }
+}
+
+/// What the driving views are shaded like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Preset {
-    /// The published method: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.
-    Paper,
-    /// The same as `default` in this version.
-    Fast,
-    /// As `paper`, but the edges of a new vertex are evaluated at once: [`Schedule::Semi`].
+pub enum DrivingShading {
+    /// All flat.
     #[default]
-    Default,
-    /// The same as `default` in this version.
-    Best,
+    Flat,
+    /// All Gouraud.
+    Gouraud,
+    /// The first, third, ... Gouraud, the others flat.
+    Mixed,
+}
+
+impl DrivingShading {
+    /// The shading of the view at `index`.
+    #[must_use]
+    pub const fn of_view(self, index: usize) -> Interpolation {
+        match self {
+            Self::Flat => Interpolation::Flat,
+            Self::Gouraud => Interpolation::Gouraud,
+            Self::Mixed if index.is_multiple_of(2) => Interpolation::Gouraud,
+            Self::Mixed => Interpolation::Flat,
+        }
+    }
 }
 
 /// How pictures find what a removed triangle hid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineName {
-    /// Row and column buckets, section 4.2.3 of the paper.
+    /// All fragments of every sample, sorted.
     #[default]
+    Layers,
+    /// Row and column buckets, section 4.2.3 of the paper: slower by far, with the same result.
     Buckets,
 }
 
@@ -79,10 +139,13 @@ pub struct ImageOptions {
     /// shading and culling.
     #[serde(with = "views_text")]
     pub views: ViewsName,
-    /// Width and height of every image, in pixels; 1 to 4096, and all views together at most 2^27 pixels.
-    pub size: u32,
-    /// Flat or Gouraud.
-    pub shading: Interpolation,
+    /// Width and height of every image; all views together have at most 2^27 samples.
+    pub size: Size,
+    /// Samples in a pixel along each axis: 1, 2 or 4.
+    #[serde(default = "one")]
+    pub samples: u32,
+    /// Flat, Gouraud, or some of each.
+    pub shading: DrivingShading,
     /// An optional specular term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specular: Option<Specular>,
@@ -94,21 +157,14 @@ pub struct ImageOptions {
     pub engine: EngineName,
     /// Placement of the new vertex (section 4.1).
     pub placement: MemorylessOptions,
+    /// What follows the last collapse.
+    #[serde(default)]
+    pub polish: Polish,
 }
 
 impl Default for ImageOptions {
     fn default() -> Self {
-        Self {
-            preset: Preset::default(),
-            views: ViewsName::Dodecahedron,
-            size: 256,
-            shading: Interpolation::Flat,
-            specular: None,
-            interior_views: 0,
-            start: Start::Auto,
-            engine: EngineName::Buckets,
-            placement: MemorylessOptions::default(),
-        }
+        Preset::default().options()
     }
 }
 
@@ -118,10 +174,17 @@ impl ImageOptions {
     /// # Errors
     /// [`Error::Usage`] that names the option, its value and the range.
     pub fn check(&self) -> Result<()> {
-        if self.size == 0 || self.size > 4096 {
+        if let Size::Pixels(size) = self.size
+            && (size == 0 || size > 4096)
+        {
             return Err(Error::Usage(format!(
-                "size is {}; expected 1 to 4096 pixels",
-                self.size
+                "size is {size}; expected 1 to 4096 pixels"
+            )));
+        }
+        if ![1, 2, 4].contains(&self.samples) {
+            return Err(Error::Usage(format!(
+                "{} samples per pixel along each axis; expected 1, 2 or 4",
+                self.samples
             )));
         }
         if let Some(s) = self.specular {
@@ -136,72 +199,56 @@ impl ImageOptions {
         Ok(())
     }
 
-    /// The driving views onto `original`, which is in units of `frame`.
+    /// The driving views onto `original`, which is in units of `frame`, turned as a whole for the given `round`; 0 is
+    /// not turned, and view files never are. A size that follows from the target must have been resolved.
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
-    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for one with several samples per pixel, and for more
-    /// pixels in all than 2^27.
-    pub fn views(&self, original: &Mesh, frame: Frame) -> Result<ViewSet> {
+    /// [`Error::Io`] for a view file; [`Error::Unsupported`] for more samples in all than 2^27.
+    pub fn views(&self, original: &Mesh, frame: Frame, round: u32) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
-        let set = view::resolve(
-            &self.views,
-            &sphere,
-            [self.size; 2],
-            Projection::Perspective,
-        )?;
-        let pixels = set.views.len() as u64 * u64::from(set.width) * u64::from(set.height);
+        let size = self.size.pixels(1);
+        let set = match self.views.directions() {
+            Some(directions) => ViewSet::around(
+                &sphere,
+                &turned(&directions, round),
+                size,
+                size,
+                Projection::Perspective,
+            )?
+            .with_samples(self.samples)?,
+            None => view::resolve(&self.views, &sphere, [size; 2], Projection::Perspective)?,
+        };
+        let samples = u64::from(set.samples * set.samples);
+        let pixels =
+            set.views.len() as u64 * u64::from(set.width) * u64::from(set.height) * samples;
         if pixels > PIXEL_LIMIT {
             return Err(Error::Unsupported(format!(
-                "{} driving images of {} x {} pixels do not fit into memory; expected at most {PIXEL_LIMIT} pixels in \
-                 all, so choose fewer or smaller images",
+                "{} driving images of {} x {} pixels with {samples} samples each do not fit into memory; expected at \
+                 most {PIXEL_LIMIT} samples in all, so choose fewer or smaller images",
                 set.views.len(),
                 set.width,
                 set.height
             )));
         }
-        if let ViewsName::File(path) = &self.views {
-            if set.samples != 1 {
-                return Err(Error::Unsupported(format!(
-                    "{} has {} samples per pixel; the driving images have 1",
-                    path.display(),
-                    set.samples
-                )));
-            }
+        if let ViewsName::File(_) = &self.views {
             return Ok(set.enter_frame(frame));
         }
-        let shading = Shading {
-            interpolation: self.shading,
-            specular: self.specular,
-            ..Shading::default()
-        };
-        set.with_shading(shading)
-            .with_interior_views(self.interior_views)
-    }
-}
-
-impl Preset {
-    /// When edges are evaluated again. The published method is lazy; evaluating the edges of a new vertex at once
-    /// notices costs that fall.
-    #[must_use]
-    pub const fn schedule(self) -> Schedule {
-        match self {
-            Self::Paper => Schedule::Lazy,
-            Self::Fast | Self::Default | Self::Best => Schedule::Semi,
+        let mut set = set;
+        for (i, view) in set.views.iter_mut().enumerate() {
+            view.shading = Shading {
+                interpolation: self.shading.of_view(i),
+                specular: self.specular,
+                ..Shading::default()
+            };
         }
+        set.with_interior_views(self.interior_views)
     }
 }
 
-impl fmt::Display for Preset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Paper => "paper",
-            Self::Fast => "fast",
-            Self::Default => "default",
-            Self::Best => "best",
-        })
-    }
+fn one() -> u32 {
+    1
 }
 
 /// `views` as the text of the command line.

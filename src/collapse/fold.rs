@@ -1,0 +1,222 @@
+//! Folds: edges whose two faces nearly lie on each other, the backs together or the fronts.
+//!
+//! Many small steps, each within the rule on normals, can add up to a fold; so the angle between neighbours itself is
+//! tested. A change may not make an edge sharper than the rules allow, unless there was one at least as sharp among
+//! the edges that it changes: what is folded in the input may stay folded.
+
+use glam::DVec3;
+
+use super::{LiveMesh, Patch, PatchFace, Refusal, Ring, Rules, ring::normal};
+use crate::num::math::sqrt;
+
+/// Tests the edges that a patch, not yet committed, makes or changes.
+///
+/// O(faces * (faces + valence)).
+///
+/// # Errors
+/// [`Refusal::Fold`].
+pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refusal> {
+    let changed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
+    let facets = |faces: &[PatchFace], after: bool| {
+        let facet = |f: &PatchFace| Facet {
+            corners: f.corners,
+            normal: normal(if after {
+                patch.after(live, f)
+            } else {
+                patch.before(live, f)
+            }),
+        };
+        faces.iter().map(facet).collect::<Vec<_>>()
+    };
+    let after = sharpest(live, &facets(&patch.added, true), changed);
+    if after >= rules.fold_cosine
+        || after >= sharpest(live, &facets(&patch.removed, false), changed)
+    {
+        Ok(())
+    } else {
+        Err(Refusal::Fold)
+    }
+}
+
+/// [`unfolded`] of the collapse of a ring's edge to `position`.
+///
+/// # Errors
+/// [`Refusal::Fold`].
+pub fn ring_unfolded(
+    live: &LiveMesh,
+    ring: &Ring,
+    position: DVec3,
+    rules: Rules,
+) -> Result<(), Refusal> {
+    let changed = |id: u32| ring.faces.binary_search_by_key(&id, |f| f.id).is_ok();
+    let [u, w] = ring.ends;
+    // Nearly every ring has room on the stack.
+    let mut few = [Facet::default(); 24];
+    let mut many;
+    let facets = if ring.faces.len() <= few.len() {
+        few.as_mut_slice()
+    } else {
+        many = vec![Facet::default(); ring.faces.len()];
+        many.as_mut_slice()
+    };
+    let mut count = 0;
+    for face in ring.faces.iter().filter(|f| f.survives) {
+        facets[count] = Facet {
+            corners: face.corners.map(|v| if v == w { u } else { v }),
+            normal: normal(face.points_after(position)),
+        };
+        count += 1;
+    }
+    let after = sharpest(live, &facets[..count], changed);
+    if after >= rules.fold_cosine {
+        return Ok(());
+    }
+    for (facet, face) in facets.iter_mut().zip(&ring.faces) {
+        *facet = Facet {
+            corners: face.corners,
+            normal: face.normal,
+        };
+    }
+    if after >= sharpest(live, &facets[..ring.faces.len()], changed) {
+        Ok(())
+    } else {
+        Err(Refusal::Fold)
+    }
+}
+
+/// A face, before or after.
+#[derive(Clone, Copy, Debug, Default)]
+struct Facet {
+    corners: [u32; 3],
+    /// Twice its area along its normal.
+    normal: DVec3,
+}
+
+/// The smallest cosine between the normals of two neighbours of which one is in `facets`; 1 where there are none. The
+/// others are the faces of `live` that are not `changed`. Faces without area and edges with more than two faces have
+/// no angle.
+fn sharpest(live: &LiveMesh, facets: &[Facet], changed: impl Fn(u32) -> bool) -> f64 {
+    let mut least = 1.0_f64;
+    for (i, facet) in facets.iter().enumerate() {
+        for k in 0..3 {
+            let side = [facet.corners[k], facet.corners[(k + 1) % 3]];
+            let within = facets.iter().enumerate().filter(|&(j, _)| j != i);
+            let mut beside = within.filter_map(|(j, f)| Some((j, along(f.corners, side)?, f)));
+            if let Some((j, forward, other)) = beside.next() {
+                // Every pair once.
+                if j > i && beside.next().is_none() {
+                    least = least.min(cosine(facet.normal, other.normal, forward));
+                }
+                continue;
+            }
+            let mut outside = live.triangles_at(side[0]).filter_map(|id| {
+                let corners = live.triangle(id)?;
+                let forward = along(corners, side)?;
+                (!changed(id)).then_some((corners, forward))
+            });
+            if let (Some((corners, forward)), None) = (outside.next(), outside.next()) {
+                let other = normal(corners.map(|v| live.position(v)));
+                least = least.min(cosine(facet.normal, other, forward));
+            }
+        }
+    }
+    least
+}
+
+/// Whether a face runs along a side in its direction; `None` where the side is not its own.
+#[inline]
+fn along(corners: [u32; 3], [a, b]: [u32; 2]) -> Option<bool> {
+    let at = corners.iter().position(|&v| v == a)?;
+    if corners[(at + 1) % 3] == b {
+        Some(true)
+    } else {
+        (corners[(at + 2) % 3] == b).then_some(false)
+    }
+}
+
+/// The cosine between two normals, the second turned over where its face runs along the common edge as the first does.
+#[inline]
+fn cosine(a: DVec3, b: DVec3, forward: bool) -> f64 {
+    let dot = if forward { -a.dot(b) } else { a.dot(b) };
+    let size2 = a.dot(a) * b.dot(b);
+    if dot < 0.0 && size2 > 0.0 {
+        dot / sqrt(size2)
+    } else {
+        // Only sharp edges matter.
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{mesh::Mesh, num::Frame};
+
+    /// Two triangles at the edge (0, 1); the apex of the second at `apex`.
+    fn hinge(apex: DVec3) -> LiveMesh {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.5, 1.0, 0.0), apex];
+        let mesh = Mesh::from_triangles(positions, vec![[0, 1, 2], [1, 0, 3]]).expect("valid");
+        LiveMesh::new(&mesh, Frame::default())
+    }
+
+    fn moved(live: &LiveMesh, to: DVec3) -> Result<(), Refusal> {
+        let mut patch = Patch::default();
+        patch.set_move(live, 3, to);
+        unfolded(live, &patch, Rules::default())
+    }
+
+    #[test]
+    fn closing_a_hinge_is_refused_and_opening_a_closed_one_is_not() {
+        let flat = hinge(DVec3::new(0.5, -1.0, 0.0));
+        assert_eq!(moved(&flat, DVec3::new(0.5, 0.2, 1.0)), Ok(()));
+        let shut = DVec3::new(0.5, 1.0, 0.3);
+        assert_eq!(moved(&flat, shut), Err(Refusal::Fold));
+        let below = shut * DVec3::new(1.0, 1.0, -1.0);
+        assert_eq!(moved(&flat, below), Err(Refusal::Fold));
+        let folded = hinge(shut);
+        assert_eq!(moved(&folded, DVec3::new(0.5, 1.0, 0.4)), Ok(()));
+        let sharper = DVec3::new(0.5, 1.0, 0.2);
+        assert_eq!(moved(&folded, sharper), Err(Refusal::Fold));
+    }
+
+    #[test]
+    fn a_collapse_that_would_fold_is_refused_as_its_patch_is() {
+        // A ridge of two slopes; the ring of its top edge, whose collapse is tried all around.
+        let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        let positions = vec![
+            p(0.0, 0.0, 0.0),
+            p(1.0, 0.0, 0.0),
+            p(-0.5, -1.0, 0.0),
+            p(0.5, -1.0, 0.0),
+            p(1.5, -1.0, 0.0),
+            p(1.5, 1.0, 0.0),
+            p(0.5, 1.0, 0.0),
+            p(-0.5, 1.0, 0.0),
+        ];
+        let triangles = vec![
+            [0, 3, 1],
+            [0, 2, 3],
+            [1, 3, 4],
+            [1, 4, 5],
+            [1, 5, 6],
+            [0, 1, 6],
+            [0, 6, 7],
+            [0, 7, 2],
+        ];
+        let mesh = Mesh::from_triangles(positions, triangles).expect("valid");
+        let live = LiveMesh::new(&mesh, Frame::default());
+        let mut ring = Ring::default();
+        assert!(ring.gather(&live, live.find_edge(0, 1).expect("an edge")));
+        let (mut folds, mut patch) = (0, Patch::default());
+        for i in 0..20 {
+            for z in [0.0, 0.4, 2.0] {
+                let to = p(f64::from(i) * 0.25 - 2.0, 0.3, z);
+                ring.patch(&live, to, &mut patch);
+                let outcome = ring_unfolded(&live, &ring, to, Rules::default());
+                assert_eq!(outcome, unfolded(&live, &patch, Rules::default()), "{to}");
+                folds += usize::from(outcome.is_err());
+            }
+        }
+        assert!(folds > 3 && folds < 50, "{folds}");
+    }
+}

@@ -1,0 +1,90 @@
+//! How the picture of one view, and its layers, take on a change.
+
+use super::{
+    Region,
+    layer_view::{Around, LayerView},
+    look::Look,
+    stacks::TILE,
+};
+
+impl LayerView {
+    /// Makes the change that the look has seen.
+    pub(super) fn apply(&mut self, around: &Around<'_>, look: &mut Look) {
+        look.swaps.clear();
+        look.enter(self.region(around));
+        // (1) The picture.
+        for i in 0..look.count {
+            let at = look.touched[i];
+            let sample = look.sample(at, self.width);
+            self.recolor(sample, look.tones[i]);
+            let before = self.stacks.shown()[sample].id();
+            look.swaps.push((before, look.slots[at as usize] as u32));
+        }
+        for i in 0..look.restyled.len() {
+            let (sample, tone) = look.restyled[i];
+            self.recolor(sample as usize, tone);
+        }
+        // (2) The layers.
+        let (cull, width, columns) = (self.view.cull, self.width, self.tile_columns);
+        for &id in &around.prepared.gone {
+            let face = self.flat_face(around, id);
+            let stacks = &mut self.stacks;
+            look.fragments(&face, &self.projector, cull, width, |sample, _, _| {
+                stacks.remove(sample, id);
+            });
+        }
+        for after in &around.prepared.fresh {
+            let face = self.flat_face_after(around, after);
+            let stacks = &mut self.stacks;
+            look.fragments(
+                &face,
+                &self.projector,
+                cull,
+                width,
+                |sample, (x, y), depth| {
+                    let tile = (y >> TILE) as usize * columns + (x >> TILE) as usize;
+                    stacks.insert(sample, tile, u64::from(depth) << 32 | u64::from(after.id));
+                },
+            );
+            if self.plain {
+                self.levels[after.id as usize] = self.level(&after.geometry);
+            }
+        }
+        // (3) What is derived from them.
+        if look.count > 0 {
+            self.measure_tiles(look.region);
+        }
+    }
+
+    fn recolor(&mut self, sample: usize, tone: u8) {
+        if self.samples > 0 {
+            let pixel = self.pixel(sample);
+            let old = self.stacks.shown()[sample].luma();
+            let sum = &mut self.sums[pixel][1];
+            *sum = *sum - u16::from(old) + u16::from(tone);
+        }
+        self.stacks.set_luma(sample, tone);
+    }
+
+    /// Finds the greatest visible depth of every tile that meets the region.
+    pub(super) fn measure_tiles(&mut self, region: Region) {
+        let height = self.projector.image().height();
+        let tile = |v: i32| (v >> TILE) as usize;
+        for row in tile(region.y0)..=tile(region.y1 - 1) {
+            for column in tile(region.x0)..=tile(region.x1 - 1) {
+                let (x0, y0) = (column << TILE, row << TILE);
+                let (x1, y1) = (
+                    (x0 + (1 << TILE)).min(self.width),
+                    (y0 + (1 << TILE)).min(height),
+                );
+                let mut deepest = 0;
+                for y in y0..y1 {
+                    let shown = &self.stacks.shown()[y * self.width + x0..y * self.width + x1];
+                    deepest = shown.iter().fold(deepest, |d: u64, s| d.max(s.least_key()));
+                }
+                // The greatest key with this upper half of the depth.
+                self.deepest[row * self.tile_columns + column] = deepest | 0xffff_ffff_ffff;
+            }
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! One view of the layers engine: its picture with all layers, and what triangles look like in it.
+
+use glam::DVec3;
+
+use super::{
+    Change, Face, FaceGeometry, Model, Paint, Projector, Region, ScreenVertex, Shader,
+    lanes::{Boxes, Lanes},
+    prepare::{After, Corner, Fate, Prepared},
+    stacks::{Stacks, TILE},
+    zbuffer::EMPTY,
+};
+use crate::{
+    num::fixed::level,
+    view::{Interpolation, View, ViewSet},
+};
+
+/// What a look in any view of a part needs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around<'a> {
+    pub(super) model: &'a Model,
+    pub(super) change: &'a Change<'a>,
+    pub(super) prepared: &'a Prepared,
+    /// Vertices as they are, and those that move as they will be.
+    pub(super) lanes: &'a Lanes,
+    pub(super) moved: &'a Lanes,
+    /// Intensities by vertex and view; empty without Gouraud shading.
+    pub(super) intensities: &'a [f64],
+    /// Boxes of the fresh triangles, and of all that go and come.
+    pub(super) fresh: &'a Boxes,
+    pub(super) all: &'a Boxes,
+    /// Views, one bit for each, in which a triangle that goes is seen.
+    pub(super) uncovers: u64,
+    /// Where a triangle is seen, by triangle.
+    pub(super) seen: &'a [u64],
+    pub(super) lane: usize,
+    pub(super) lane_count: usize,
+}
+
+/// A picture with all its layers.
+#[derive(Clone, Debug)]
+pub(super) struct LayerView {
+    pub(super) view: View,
+    pub(super) projector: Projector,
+    pub(super) shader: Shader,
+    /// Flat shading of white triangles: a level for every triangle, and that of the background.
+    pub(super) levels: Vec<u8>,
+    /// Flat shading of white triangles.
+    pub(super) plain: bool,
+    pub(super) gouraud: bool,
+    pub(super) background: u8,
+    pub(super) stacks: Stacks,
+    /// Where pixels have several samples, their sums: of the reference and now.
+    pub(super) sums: Vec<[u16; 2]>,
+    /// By tile: no sample shows a key that is greater.
+    pub(super) deepest: Vec<u64>,
+    pub(super) width: usize,
+    pub(super) tile_columns: usize,
+    /// Logarithm of the samples in a row of a pixel.
+    pub(super) samples: u32,
+}
+
+impl LayerView {
+    pub(super) fn new(
+        model: &Model,
+        view: &View,
+        set: &ViewSet,
+        reference: &[u16],
+        colored: bool,
+    ) -> Self {
+        let projector = Projector::new(view, set);
+        let image = projector.image();
+        let (width, height) = (image.width(), image.height());
+        let tile_columns = width.div_ceil(1 << TILE);
+        let tiles = tile_columns * height.div_ceil(1 << TILE);
+        let gouraud = view.shading.interpolation == Interpolation::Gouraud;
+        let count = model.corners.len();
+        let single: Vec<u8> = match set.samples {
+            1 => reference.iter().map(|&y0| y0 as u8).collect(),
+            _ => Vec::new(),
+        };
+        let nothing = u64::from(u32::MAX) << 32 | count as u64;
+        let mut pictures = Self {
+            view: *view,
+            shader: Shader::new(view),
+            levels: Vec::new(),
+            plain: !gouraud && !colored,
+            gouraud,
+            background: set.background,
+            stacks: Stacks::new(width * height, set.background, &single, tiles, nothing),
+            sums: Vec::new(),
+            deepest: vec![u64::MAX; tiles],
+            width,
+            tile_columns,
+            samples: set.samples.trailing_zeros(),
+            projector,
+        };
+        if pictures.plain {
+            let levels = model.corners.iter().map(|c| {
+                pictures.level(&FaceGeometry::new(c.map(|v| model.positions[v as usize])))
+            });
+            pictures.levels = levels.collect();
+            pictures.levels.push(set.background);
+        }
+        pictures.draw(model);
+        if set.samples > 1 {
+            pictures.sums = reference.iter().map(|&y0| [y0, 0]).collect();
+            for at in 0..width * height {
+                let pixel = pictures.pixel(at);
+                pictures.sums[pixel][1] += u16::from(pictures.stacks.shown()[at].luma());
+            }
+        }
+        pictures.measure_tiles(image);
+        pictures
+    }
+
+    /// Draws all triangles into the empty picture.
+    fn draw(&mut self, model: &Model) {
+        let positions = model.positions.iter();
+        let screen: Vec<ScreenVertex> = positions.map(|&p| self.projector.screen(p)).collect();
+        let mut stacks = std::mem::replace(&mut self.stacks, Stacks::new(0, 0, &[], 0, 0));
+        for id in 0..model.corners.len() as u32 {
+            let corners = model.corners[id as usize];
+            let intensities = corners.map(|v| self.vertex_intensity(model, v));
+            let face = Face {
+                positions: corners.map(|v| model.positions[v as usize]),
+                screen: corners.map(|v| screen[v as usize]),
+                paint: self.paint_now(model, id, intensities),
+            };
+            face.pieces(&self.projector, self.view.cull, |setup, paint| {
+                setup.fragments(self.projector.image(), |x, y, depth| {
+                    let at = y as usize * self.width + x as usize;
+                    let key = u64::from(depth) << 32 | u64::from(id);
+                    if key < stacks.nearest(at) {
+                        stacks.set_luma(at, paint.luma(setup, x, y));
+                    }
+                    stacks.insert(at, self.tile(x, y), key);
+                });
+            });
+        }
+        self.stacks = stacks;
+    }
+
+    /// The luma of every sample.
+    pub(super) fn luma(&self) -> Vec<u8> {
+        self.stacks.shown().iter().map(|s| s.luma()).collect()
+    }
+
+    /// The keys of the picture as everyone else writes them.
+    pub(super) fn keys(&self) -> Vec<u64> {
+        let nothing = self.stacks.nothing();
+        let keys = (0..self.stacks.shown().len()).map(|at| self.stacks.nearest(at));
+        keys.map(|k| if k == nothing { EMPTY } else { k }).collect()
+    }
+
+    /// The tile of a sample.
+    #[inline]
+    pub(super) fn tile(&self, x: i32, y: i32) -> usize {
+        (y >> TILE) as usize * self.tile_columns + (x >> TILE) as usize
+    }
+
+    /// The flat level of a white triangle.
+    #[inline]
+    pub(super) fn level(&self, geometry: &FaceGeometry) -> u8 {
+        level(self.shader.intensity(geometry.centroid, geometry.normal))
+    }
+
+    /// The intensity of a point with a normal.
+    pub(super) fn intensity(&self, position: DVec3, normal: DVec3) -> f64 {
+        self.shader.intensity(position, normal)
+    }
+
+    /// True where pixels of a triangle differ in luma.
+    pub(super) fn is_shaded(&self) -> bool {
+        !self.plain
+    }
+
+    /// True where vertices have intensities.
+    pub(super) fn is_gouraud(&self) -> bool {
+        self.gouraud
+    }
+
+    /// The intensity of a vertex of the model; 0 without Gouraud shading.
+    pub(super) fn vertex_intensity(&self, model: &Model, vertex: u32) -> f64 {
+        if self.gouraud {
+            let v = vertex as usize;
+            self.shader.intensity(model.positions[v], model.normals[v])
+        } else {
+            0.0
+        }
+    }
+
+    /// What a triangle of the model looks like.
+    pub(super) fn paint_now(&self, model: &Model, id: u32, intensities: [f64; 3]) -> Paint {
+        let colors = model.colors.get(id as usize);
+        if self.gouraud {
+            Paint::gouraud(intensities, colors)
+        } else if self.plain {
+            Paint::Flat(self.levels[id as usize])
+        } else {
+            let corners = model.corners[id as usize].map(|v| model.positions[v as usize]);
+            let geometry = FaceGeometry::new(corners);
+            Paint::flat(
+                self.shader.intensity(geometry.centroid, geometry.normal),
+                colors,
+            )
+        }
+    }
+
+    /// The pixel of a sample.
+    #[inline]
+    pub(super) fn pixel(&self, at: usize) -> usize {
+        if self.samples == 0 {
+            return at;
+        }
+        let (y, x) = (at / self.width, at % self.width);
+        (y >> self.samples) * (self.width >> self.samples) + (x >> self.samples)
+    }
+
+    /// A triangle of the model on this screen.
+    pub(super) fn face_now(&self, around: &Around<'_>, id: u32) -> Face {
+        let model = around.model;
+        let corners = model.corners[id as usize];
+        let intensities = corners.map(|v| {
+            let at = v as usize * around.lane_count + around.lane;
+            around.intensities.get(at).copied().unwrap_or(0.0)
+        });
+        Face {
+            positions: corners.map(|v| model.positions[v as usize]),
+            screen: corners.map(|v| around.lanes.screen(v as usize, around.lane)),
+            paint: self.paint_now(model, id, intensities),
+        }
+    }
+
+    /// A triangle after the change on this screen; `shaded` are the new intensities.
+    pub(super) fn face_after(&self, around: &Around<'_>, face: &After, shaded: &[f64]) -> Face {
+        let colors = (!around.model.colors.is_empty()).then_some(&face.colors);
+        let paint = if self.gouraud {
+            let intensity = |c: Corner| match c.shaded() {
+                Some(entry) => shaded[entry],
+                None => around.intensities[c.vertex as usize * around.lane_count + around.lane],
+            };
+            Paint::gouraud(face.corners.map(intensity), colors)
+        } else {
+            let g = &face.geometry;
+            Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+        };
+        Face {
+            positions: face.positions,
+            screen: face.corners.map(|c| match c.moved() {
+                Some(entry) => around.moved.screen(entry, around.lane),
+                None => around.lanes.screen(c.vertex as usize, around.lane),
+            }),
+            paint,
+        }
+    }
+
+    /// A triangle of the model on this screen, whatever it looks like.
+    pub(super) fn flat_face(&self, around: &Around<'_>, id: u32) -> Face {
+        let corners = around.model.corners[id as usize];
+        Face {
+            positions: corners.map(|v| around.model.positions[v as usize]),
+            screen: corners.map(|v| around.lanes.screen(v as usize, around.lane)),
+            paint: Paint::Flat(0),
+        }
+    }
+
+    /// A triangle after the change on this screen, whatever it looks like.
+    pub(super) fn flat_face_after(&self, around: &Around<'_>, face: &After) -> Face {
+        Face {
+            positions: face.positions,
+            screen: face.corners.map(|c| match c.moved() {
+                Some(entry) => around.moved.screen(entry, around.lane),
+                None => around.lanes.screen(c.vertex as usize, around.lane),
+            }),
+            paint: Paint::Flat(0),
+        }
+    }
+
+    /// The luma of a triangle at a pixel that it covers; of the background where `id` is no triangle.
+    pub(super) fn luma_behind(
+        &self,
+        around: &Around<'_>,
+        id: u32,
+        place: (i32, i32),
+        shaded: &[f64],
+    ) -> u8 {
+        if id as usize >= around.model.corners.len() {
+            return self.background;
+        }
+        let face = match around.prepared.fate(id) {
+            Fate::Restyled(index) => {
+                self.face_after(around, &around.prepared.restyled[index], shaded)
+            }
+            _ => self.face_now(around, id),
+        };
+        self.luma_at(&face, place)
+    }
+
+    /// The luma of a face at a pixel that it covers: of the nearest of its pieces.
+    pub(super) fn luma_at(&self, face: &Face, (x, y): (i32, i32)) -> u8 {
+        let pixel = Region {
+            x0: x,
+            y0: y,
+            x1: x + 1,
+            y1: y + 1,
+        };
+        let mut nearest = None;
+        face.pieces(&self.projector, self.view.cull, |setup, paint| {
+            setup.fragments(pixel, |x, y, depth| {
+                if nearest.is_none_or(|(least, _)| depth < least) {
+                    nearest = Some((depth, paint.luma(setup, x, y)));
+                }
+            });
+        });
+        nearest.map_or(self.background, |(_, luma)| luma)
+    }
+}

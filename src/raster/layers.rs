@@ -1,0 +1,333 @@
+//! The layers engine: every sample keeps all of its fragments, so what a removed triangle hid is at hand.
+//!
+//! Nothing is drawn again but the triangles of the change. A view is left out, exactly, where none of the triangles that
+//! go is seen and those that come are behind everything seen in the tiles of their box. Views are kept in parts of at
+//! most 64; the vertices of a part lie together for all of its views, and a bit for every view says where a triangle is
+//! seen.
+
+use rayon::prelude::*;
+
+use super::{
+    Change, Model, Plane, Unrender,
+    lanes::{Boxes, Lanes},
+    layer_view::{Around, LayerView},
+    look::Look,
+    prepare::Prepared,
+};
+use crate::view::ViewSet;
+
+/// Views that a part has bits for.
+const MOST_VIEWS: usize = 64;
+
+/// Fewest views that are worth a part of their own.
+const FEWEST_VIEWS: usize = 5;
+
+/// Most parts that the views are divided into for the sake of threads.
+const PARTS: usize = 4;
+
+/// Pixels of an evaluation from which handing half of the views to another thread pays.
+const WORTH_SHARING: usize = 4_000;
+
+/// Pictures of a mesh in all views, with all their layers.
+#[derive(Clone, Debug)]
+pub struct LayerEngine {
+    model: Model,
+    parts: Vec<Part>,
+    /// Views in a part; the last one may have fewer.
+    per_part: usize,
+    size: [u32; 2],
+    /// A view needs the geometry of faces.
+    flat: bool,
+}
+
+/// Buffers of an evaluation, reused.
+#[derive(Clone, Debug)]
+pub struct LayerScratch {
+    prepared: Prepared,
+    parts: Vec<PartScratch>,
+    /// Nothing else runs beside: parts may be given to other threads.
+    lone: bool,
+    /// Pixels that the last evaluation went through.
+    pixels: usize,
+}
+
+#[derive(Clone, Debug)]
+struct PartScratch {
+    moved: Lanes,
+    fresh: Boxes,
+    all: Boxes,
+    look: Look,
+}
+
+/// Some of the views.
+#[derive(Clone, Debug)]
+struct Part {
+    views: Vec<LayerView>,
+    lanes: Lanes,
+    /// Gouraud shading: intensities by vertex and view.
+    intensities: Vec<f64>,
+    /// Samples that show a triangle, by triangle and view.
+    counts: Vec<u32>,
+    /// Where that is not 0.
+    seen: Vec<u64>,
+}
+
+impl Part {
+    fn new(model: &Model, views: Vec<LayerView>) -> Self {
+        let count = views.len();
+        let shaded = views.iter().any(LayerView::is_shaded);
+        let mut part = Self {
+            lanes: Lanes::new(count, model.positions.len(), shaded),
+            intensities: Vec::new(),
+            counts: vec![0; model.corners.len() * count],
+            seen: vec![0; model.corners.len()],
+            views,
+        };
+        for (v, &position) in model.positions.iter().enumerate() {
+            part.lanes
+                .project(v, position, part.views.iter().map(|view| &view.projector));
+        }
+        if part.views.iter().any(LayerView::is_gouraud) {
+            part.intensities = (0..model.positions.len() as u32)
+                .flat_map(|v| {
+                    part.views
+                        .iter()
+                        .map(move |view| view.vertex_intensity(model, v))
+                })
+                .collect();
+        }
+        for (lane, view) in part.views.iter().enumerate() {
+            for shown in view.stacks.shown() {
+                let id = shown.id() as usize;
+                if id < part.seen.len() {
+                    part.counts[id * count + lane] += 1;
+                    part.seen[id] |= 1 << lane;
+                }
+            }
+        }
+        part
+    }
+
+    fn begin(&self, change: &Change<'_>, prepared: &Prepared, scratch: &mut PartScratch) -> u64 {
+        let PartScratch {
+            moved, fresh, all, ..
+        } = scratch;
+        moved.resize(change.moved.len());
+        for (entry, m) in change.moved.iter().enumerate() {
+            moved.project(entry, m.1, self.views.iter().map(|view| &view.projector));
+        }
+        fresh.clear(self.views.len());
+        for &v in &prepared.rim {
+            fresh.add(&self.lanes, v as usize);
+        }
+        for &entry in &prepared.moved {
+            fresh.add(moved, entry as usize);
+        }
+        all.copy(fresh);
+        for &v in &prepared.inside {
+            all.add(&self.lanes, v as usize);
+        }
+        let seen = prepared.gone.iter().map(|&id| self.seen[id as usize]);
+        seen.fold(0, |all, bits| all | bits)
+    }
+
+    fn evaluate(
+        &self,
+        model: &Model,
+        change: &Change<'_>,
+        prepared: &Prepared,
+        scratch: &mut PartScratch,
+    ) -> i64 {
+        let uncovers = self.begin(change, prepared, scratch);
+        let mut sum = 0;
+        for (lane, view) in self.views.iter().enumerate() {
+            let around = Around {
+                model,
+                change,
+                prepared,
+                lanes: &self.lanes,
+                moved: &scratch.moved,
+                intensities: &self.intensities,
+                fresh: &scratch.fresh,
+                all: &scratch.all,
+                uncovers,
+                seen: &self.seen,
+                lane,
+                lane_count: self.views.len(),
+            };
+            sum += view.look(&around, &mut scratch.look);
+        }
+        sum
+    }
+
+    fn commit(
+        &mut self,
+        model: &Model,
+        change: &Change<'_>,
+        prepared: &Prepared,
+        scratch: &mut PartScratch,
+    ) -> i64 {
+        let uncovers = self.begin(change, prepared, scratch);
+        let lane_count = self.views.len();
+        let mut sum = 0;
+        for (lane, view) in self.views.iter_mut().enumerate() {
+            let around = Around {
+                model,
+                change,
+                prepared,
+                lanes: &self.lanes,
+                moved: &scratch.moved,
+                intensities: &self.intensities,
+                fresh: &scratch.fresh,
+                all: &scratch.all,
+                uncovers,
+                seen: &self.seen,
+                lane,
+                lane_count,
+            };
+            sum += view.look(&around, &mut scratch.look);
+            view.apply(&around, &mut scratch.look);
+            for &(before, after) in &scratch.look.swaps {
+                for (id, step) in [(before, u32::MAX), (after, 1)] {
+                    let Some(seen) = self.seen.get_mut(id as usize) else {
+                        continue; // the background
+                    };
+                    let count = &mut self.counts[id as usize * lane_count + lane];
+                    *count = count.wrapping_add(step);
+                    *seen = *seen & !(1 << lane) | u64::from(*count > 0) << lane;
+                }
+            }
+        }
+        for (entry, &(v, _)) in change.moved.iter().enumerate() {
+            self.lanes.copy(v as usize, &scratch.moved, entry);
+        }
+        if !self.intensities.is_empty() {
+            for &(v, normal) in change.normals {
+                let position = model.position_after(change, v);
+                for (lane, view) in self.views.iter().enumerate() {
+                    self.intensities[v as usize * lane_count + lane] =
+                        view.intensity(position, normal);
+                }
+            }
+        }
+        sum
+    }
+}
+
+impl LayerEngine {
+    fn place(&self, view: usize) -> &LayerView {
+        &self.parts[view / self.per_part].views[view % self.per_part]
+    }
+
+    fn plane<T: Copy>(&self, values: Vec<T>) -> Plane<T> {
+        Plane::new(self.size[0], self.size[1], values).expect("a value for every sample")
+    }
+}
+
+impl Unrender for LayerEngine {
+    type Scratch = LayerScratch;
+
+    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self {
+        let colored = !model.colors.is_empty();
+        let count = set.views.len();
+        let threads = rayon::current_num_threads().min(PARTS);
+        let parts = threads
+            .min(count / FEWEST_VIEWS)
+            .max(count.div_ceil(MOST_VIEWS))
+            .max(1);
+        let per_part = count.div_ceil(parts).max(1);
+        let views: Vec<LayerView> = set
+            .views
+            .par_iter()
+            .zip(reference)
+            .map(|(view, y0)| LayerView::new(&model, view, set, y0.values(), colored))
+            .collect();
+        let flat = colored || views.iter().any(|view| !view.is_gouraud());
+        let mut views = views.into_iter();
+        let chunks: Vec<Vec<LayerView>> = std::iter::from_fn(|| {
+            let chunk: Vec<LayerView> = views.by_ref().take(per_part).collect();
+            (!chunk.is_empty()).then_some(chunk)
+        })
+        .collect();
+        let parts = chunks
+            .into_par_iter()
+            .map(|chunk| Part::new(&model, chunk))
+            .collect();
+        Self {
+            model,
+            parts,
+            per_part,
+            size: [set.width * set.samples, set.height * set.samples],
+            flat,
+        }
+    }
+
+    fn scratch(&self) -> LayerScratch {
+        let part = |part: &Part| PartScratch {
+            moved: Lanes::new(
+                part.views.len(),
+                1,
+                part.views.iter().any(LayerView::is_shaded),
+            ),
+            fresh: Boxes::default(),
+            all: Boxes::default(),
+            look: Look::default(),
+        };
+        LayerScratch {
+            prepared: Prepared::new(self.model.corners.len()),
+            parts: self.parts.iter().map(part).collect(),
+            lone: false,
+            pixels: 0,
+        }
+    }
+
+    fn lone_scratch(&self) -> LayerScratch {
+        LayerScratch {
+            lone: true,
+            ..self.scratch()
+        }
+    }
+
+    fn evaluate(&self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&Part, &mut PartScratch)| {
+            scratch.look.pixels_seen = 0;
+            part.evaluate(model, change, prepared, scratch)
+        };
+        let sum = if scratch.lone && scratch.pixels > WORTH_SHARING {
+            let pairs = self.parts.par_iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
+        scratch.pixels = scratch.parts.iter().map(|part| part.look.pixels_seen).sum();
+        sum
+    }
+
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
+        scratch.prepared.fill(&self.model, change, self.flat);
+        let (model, prepared) = (&self.model, &scratch.prepared);
+        let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
+            part.commit(model, change, prepared, scratch)
+        };
+        let sum = if self.parts.len() > 1 {
+            let pairs = self.parts.par_iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        } else {
+            let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
+            pairs.map(work).sum()
+        };
+        self.model.apply(change);
+        sum
+    }
+
+    fn luma(&self, view: usize) -> Plane<u8> {
+        self.plane(self.place(view).luma())
+    }
+
+    fn keys(&self, view: usize) -> Plane<u64> {
+        self.plane(self.place(view).keys())
+    }
+}

@@ -1,0 +1,493 @@
+//! What a change does to the picture of one view.
+//!
+//! A look goes through the pixels of the bounding box of the triangles that go and come. Where one that goes is the
+//! nearest, the next layer that stays takes its place; the fresh triangles compete for every pixel they cover. Triangles
+//! that only look different are visited where they are seen. Most fresh fragments are decided by a bound: no layer behind
+//! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others look at the layers.
+
+use super::{
+    Face, Paint, Projector, Region, ScreenVertex, Setup,
+    lanes::clipped_pixels,
+    layer_view::{Around, LayerView},
+    prepare::After,
+    small::{Covered, Fit, Small, SmallCorner},
+    stacks::TILE,
+    unrender::difference,
+};
+use crate::view::Cull;
+
+/// A fresh triangle, or a piece of one, that won a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    level: u8,
+    /// What pixels need that have no level in common.
+    shaded: Option<(Setup, Paint)>,
+}
+
+/// Buffers of a look, and what it found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Look {
+    /// The pixels that may change, and the logarithm of the stride of the buffers below.
+    pub(super) region: Region,
+    shift: u32,
+    /// What a key must be below to be seen at a pixel of the region. Pixels that still show what they did, or what
+    /// was behind: a lower bound of that; others: the nearest fresh key. After the look the keys of touched pixels.
+    pub(super) slots: Vec<u64>,
+    /// By pixel: 0 as before, 1 what was behind, more is a piece.
+    who: Vec<u32>,
+    /// Pixels of the region that show something else, and their luma afterwards.
+    pub(super) touched: Vec<u32>,
+    pub(super) count: usize,
+    pub(super) tones: Vec<u8>,
+    /// Samples of the picture that only look different, and their luma afterwards.
+    pub(super) restyled: Vec<(u32, u8)>,
+    /// After a commit: for every touched sample the triangle that it showed and the one it shows; ids above the last
+    /// triangle are the background.
+    pub(super) swaps: Vec<(u32, u32)>,
+    /// Pixels of all regions that were gone through; only ever counted up.
+    pub(super) pixels_seen: usize,
+    pieces: Vec<Piece>,
+    covered: Covered,
+    /// Columns of a row that show a triangle.
+    columns: Vec<i32>,
+    /// By pixel of the picture: the change of the sum of its samples; 0 between looks.
+    deltas: Vec<i32>,
+    pixels: Vec<u32>,
+    /// New intensities of the vertices whose normals change, where this view needs them.
+    intensities: Vec<f64>,
+}
+
+impl LayerView {
+    /// What the change does to the squared differences of this view.
+    pub(super) fn look(&self, around: &Around<'_>, look: &mut Look) -> i64 {
+        look.count = 0;
+        look.restyled.clear();
+        let uncovers = around.uncovers >> around.lane & 1 != 0;
+        let restyles = self.restyles(around);
+        let hidden = !uncovers && self.is_hidden(around);
+        if hidden && !restyles {
+            return 0;
+        }
+        look.pieces.clear();
+        look.intensities.clear();
+        if self.gouraud {
+            let normals = around.change.normals.iter();
+            look.intensities.extend(normals.map(|&(v, n)| {
+                let position = around.model.position_after(around.change, v);
+                self.shader.intensity(position, n)
+            }));
+        }
+        if !hidden {
+            look.begin(self.region(around));
+            self.uncover(around, uncovers, look);
+            self.draw_fresh(around, look);
+            self.tone(around, look);
+        }
+        if restyles {
+            self.restyle(around, look, hidden);
+        }
+        self.sum(look)
+    }
+
+    /// The pixels that the triangles can touch that go and come.
+    #[inline]
+    pub(super) fn region(&self, around: &Around<'_>) -> Region {
+        match around.all.pixels(around.lane, self.projector.bits()) {
+            Some(pixels) => pixels.intersection(self.projector.image()),
+            None => self.clipped_region(around),
+        }
+    }
+
+    /// The pixels that the triangles can touch that go and come, where some are clipped.
+    #[cold]
+    fn clipped_region(&self, around: &Around<'_>) -> Region {
+        let mut region = Region::EMPTY;
+        let mut add = |face: &Face| {
+            region = region.union(clipped_pixels(face, &self.projector, self.view.cull));
+        };
+        for &id in &around.prepared.gone {
+            add(&self.flat_face(around, id));
+        }
+        for face in &around.prepared.fresh {
+            add(&self.flat_face_after(around, face));
+        }
+        region
+    }
+
+    /// True where a triangle that stays in its place and looks different is seen.
+    fn restyles(&self, around: &Around<'_>) -> bool {
+        let restyled = &around.prepared.restyled;
+        !self.plain
+            && restyled
+                .iter()
+                .any(|f| around.seen[f.id as usize] >> around.lane & 1 != 0)
+    }
+
+    /// True where the fresh triangles are behind everything that is seen in the tiles of their box.
+    #[inline]
+    fn is_hidden(&self, around: &Around<'_>) -> bool {
+        let Some(pixels) = around.fresh.pixels(around.lane, self.projector.bits()) else {
+            return false;
+        };
+        let pixels = pixels.intersection(self.projector.image());
+        if pixels.is_empty() {
+            return true;
+        }
+        let nearest = u64::from(around.fresh.nearest(around.lane)) << 32;
+        let tile = |v: i32| (v >> TILE) as usize;
+        (tile(pixels.y0)..=tile(pixels.y1 - 1)).all(|row| {
+            let row = &self.deepest[row * self.tile_columns..][..self.tile_columns];
+            let row = &row[tile(pixels.x0)..=tile(pixels.x1 - 1)];
+            row.iter().all(|&deepest| nearest > deepest)
+        })
+    }
+
+    /// Finds the pixels that show a triangle that goes, and fills the slots with lower bounds.
+    #[inline]
+    fn uncover(&self, around: &Around<'_>, uncovers: bool, look: &mut Look) {
+        let region = look.region;
+        let width = region.width();
+        let fates = around.prepared.fates();
+        let mut count = 0;
+        for (row, y) in (region.y0..region.y1).enumerate() {
+            let from = y as usize * self.width + region.x0 as usize;
+            let start = row << look.shift;
+            let slots = &mut look.slots[start..start + width];
+            let shown = &self.stacks.shown()[from..from + width];
+            if !uncovers {
+                for (slot, shown) in slots.iter_mut().zip(shown) {
+                    *slot = shown.least_key();
+                }
+                continue;
+            }
+            for (x, (slot, shown)) in slots.iter_mut().zip(shown).enumerate() {
+                *slot = shown.least_key();
+                look.touched[count] = (start + x) as u32;
+                count += usize::from(fates[shown.id() as usize] == 1);
+            }
+        }
+        for &at in &look.touched[..count] {
+            let (x, y) = look.place(at);
+            look.slots[at as usize] = self.stacks.bound(self.tile(x, y));
+            look.who[at as usize] = 1;
+        }
+        look.count = count;
+    }
+
+    /// Whether a fresh key that is not below the slot of a pixel is seen there all the same.
+    #[inline]
+    fn is_seen(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
+        let now = match look.who[at as usize] {
+            0 if key >> 48 > look.slots[at as usize] >> 48 => return false,
+            0 => self.stacks.nearest(look.sample(at, self.width)),
+            1 => self.behind(around, look, at),
+            _ => return false,
+        };
+        key < now
+    }
+
+    /// The key that a pixel shows when the triangles that go are gone and nothing comes.
+    #[inline]
+    fn behind(&self, around: &Around<'_>, look: &Look, at: u32) -> u64 {
+        let sample = look.sample(at, self.width);
+        self.stacks.below(sample, |id| around.prepared.goes(id))
+    }
+
+    /// Lets the fresh triangles compete for the pixels they cover.
+    fn draw_fresh(&self, around: &Around<'_>, look: &mut Look) {
+        let (bits, image) = (self.projector.bits(), self.projector.image());
+        for face in &around.prepared.fresh {
+            let corners = face.corners.map(|c| match c.moved() {
+                Some(entry) => around.moved.corner(entry, around.lane),
+                None => around.lanes.corner(c.vertex as usize, around.lane),
+            });
+            if let [Some(a), Some(b), Some(c)] = corners {
+                match Small::new([a, b, c], bits, self.view.cull, image) {
+                    Fit::Nothing => continue,
+                    Fit::Small(small) => {
+                        if self.draw_small(around, &small, face.id, look) {
+                            let piece = self.piece(around, face, look);
+                            look.pieces.push(piece);
+                        }
+                        continue;
+                    }
+                    Fit::Large => {}
+                }
+            }
+            let whole = self.face_after(around, face, &look.intensities);
+            whole.pieces(&self.projector, self.view.cull, |setup, paint| {
+                if self.draw_large(around, setup, face.id, look) {
+                    look.pieces.push(Piece {
+                        level: match paint {
+                            Paint::Flat(level) => *level,
+                            _ => 0,
+                        },
+                        shaded: (!self.plain).then_some((*setup, *paint)),
+                    });
+                }
+            });
+        }
+    }
+
+    /// Lets a small triangle compete under the next number; true where it won a pixel.
+    #[inline]
+    fn draw_small(&self, around: &Around<'_>, small: &Small, id: u32, look: &mut Look) -> bool {
+        let origin = (look.region.x0, look.region.y0);
+        let covered = small.list(origin, look.shift, &mut look.covered);
+        let number = look.pieces.len() as u32 + 2;
+        let mut any = false;
+        for j in 0..covered {
+            let (at, above) = (look.covered.at[j], look.covered.above[j]);
+            let key = u64::from(small.depth(above)) << 32 | u64::from(id);
+            if key < look.slots[at as usize] || self.is_seen(around, look, at, key) {
+                look.win(at, key, number);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Lets a triangle of any size compete under the next number; true where it won a pixel.
+    fn draw_large(&self, around: &Around<'_>, setup: &Setup, id: u32, look: &mut Look) -> bool {
+        let region = look.region;
+        let number = look.pieces.len() as u32 + 2;
+        let mut any = false;
+        setup.fragments(region, |x, y, depth| {
+            let at = ((y - region.y0) as u32) << look.shift | (x - region.x0) as u32;
+            let key = u64::from(depth) << 32 | u64::from(id);
+            if key < look.slots[at as usize] || self.is_seen(around, look, at, key) {
+                look.win(at, key, number);
+                any = true;
+            }
+        });
+        any
+    }
+
+    /// What a small fresh triangle looks like.
+    #[inline]
+    fn piece(&self, around: &Around<'_>, face: &After, look: &Look) -> Piece {
+        if self.plain {
+            return Piece {
+                level: self.level(&face.geometry),
+                shaded: None,
+            };
+        }
+        let face = self.face_after(around, face, &look.intensities);
+        let setup = Setup::new(
+            face.screen,
+            self.projector.bits(),
+            self.view.cull,
+            self.projector.image(),
+        );
+        Piece {
+            level: 0,
+            shaded: setup.map(|setup| (setup, face.paint)),
+        }
+    }
+
+    /// The luma of every touched pixel.
+    fn tone(&self, around: &Around<'_>, look: &mut Look) {
+        look.tones.clear();
+        for j in 0..look.count {
+            let at = look.touched[j];
+            let tone = match look.who[at as usize].checked_sub(2) {
+                Some(piece) => {
+                    let piece = &look.pieces[piece as usize];
+                    match &piece.shaded {
+                        None => piece.level,
+                        Some((setup, paint)) => {
+                            let (x, y) = look.place(at);
+                            paint.luma(setup, x, y)
+                        }
+                    }
+                }
+                None => {
+                    let key = self.behind(around, look, at);
+                    look.slots[at as usize] = key;
+                    if self.plain {
+                        self.levels[key as u32 as usize]
+                    } else {
+                        self.luma_behind(around, key as u32, look.place(at), &look.intensities)
+                    }
+                }
+            };
+            look.tones.push(tone);
+        }
+    }
+
+    /// The luma of pixels that keep their triangle, which looks different.
+    fn restyle(&self, around: &Around<'_>, look: &mut Look, hidden: bool) {
+        let (bits, image) = (self.projector.bits(), self.projector.image());
+        for after in &around.prepared.restyled {
+            if around.seen[after.id as usize] >> around.lane & 1 == 0 {
+                continue;
+            }
+            let face = self.face_after(around, after, &look.intensities);
+            let whole = match face.screen.iter().any(ScreenVertex::is_outside) {
+                true => None,
+                false => Setup::new(face.screen, bits, self.view.cull, image),
+            };
+            let bounds = match &whole {
+                Some(setup) => setup.bounds(),
+                None => clipped_pixels(&face, &self.projector, self.view.cull),
+            };
+            for y in bounds.y0..bounds.y1 {
+                let start = y as usize * self.width;
+                let row = start + bounds.x0 as usize..start + bounds.x1 as usize;
+                let shown = &self.stacks.shown()[row];
+                look.columns.resize(shown.len().max(look.columns.len()), 0);
+                let mut count = 0;
+                for (x, shown) in (bounds.x0..).zip(shown) {
+                    look.columns[count] = x;
+                    count += usize::from(shown.id() == after.id);
+                }
+                for i in 0..count {
+                    let x = look.columns[i];
+                    if !hidden && look.is_touched(x, y) {
+                        continue;
+                    }
+                    let luma = match &whole {
+                        Some(setup) => face.paint.luma(setup, x, y),
+                        None => self.luma_at(&face, (x, y)),
+                    };
+                    look.restyled.push(((start + x as usize) as u32, luma));
+                }
+            }
+        }
+    }
+
+    /// What the luma of the touched and restyled samples add to the squared differences.
+    fn sum(&self, look: &mut Look) -> i64 {
+        let shown = self.stacks.shown();
+        let mut total = 0;
+        if self.samples == 0 {
+            let add = |sample: usize, tone: u8| {
+                let [y0, now] = [shown[sample].reference(), shown[sample].luma()];
+                difference(u16::from(y0), u16::from(now), u16::from(tone))
+            };
+            for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
+                total += add(look.sample(at, self.width), tone);
+            }
+            for &(sample, tone) in &look.restyled {
+                total += add(sample as usize, tone);
+            }
+            return total;
+        }
+        let Look { deltas, pixels, .. } = look;
+        let (mut deltas, mut pixels) = (std::mem::take(deltas), std::mem::take(pixels));
+        deltas.resize(self.sums.len(), 0);
+        pixels.clear();
+        let mut add = |sample: usize, tone: u8| {
+            let pixel = self.pixel(sample);
+            if deltas[pixel] == 0 {
+                pixels.push(pixel as u32);
+            }
+            deltas[pixel] += i32::from(tone) - i32::from(shown[sample].luma());
+        };
+        for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
+            add(look.sample(at, self.width), tone);
+        }
+        for &(sample, tone) in &look.restyled {
+            add(sample as usize, tone);
+        }
+        for &pixel in &pixels {
+            let delta = std::mem::take(&mut deltas[pixel as usize]);
+            let [y0, now] = self.sums[pixel as usize];
+            total += difference(y0, now, (i32::from(now) + delta) as u16);
+        }
+        (look.deltas, look.pixels) = (deltas, pixels);
+        total
+    }
+}
+
+impl Look {
+    /// Makes room for a region, and forgets the last one.
+    fn begin(&mut self, region: Region) {
+        self.enter(region);
+        let size = region.height() << self.shift;
+        self.pixels_seen += size;
+        if self.slots.len() < size + 1 {
+            self.slots.resize(size + 1, 0);
+            self.touched.resize(size + 1, 0);
+        }
+        self.who.clear();
+        self.who.resize(size, 0);
+    }
+
+    /// Makes indices those of a region.
+    pub(super) fn enter(&mut self, region: Region) {
+        self.region = region;
+        self.shift = region.width().next_power_of_two().trailing_zeros();
+    }
+
+    /// Gives a pixel to a piece.
+    #[inline]
+    fn win(&mut self, at: u32, key: u64, number: u32) {
+        let i = at as usize;
+        self.touched[self.count] = at;
+        self.count += usize::from(self.who[i] == 0);
+        self.slots[i] = key;
+        self.who[i] = number;
+    }
+
+    /// The sample of the picture where a pixel of the region is.
+    #[inline]
+    pub(super) fn sample(&self, at: u32, width: usize) -> usize {
+        let (row, column) = (at >> self.shift, at & ((1 << self.shift) - 1));
+        (self.region.y0 as usize + row as usize) * width + self.region.x0 as usize + column as usize
+    }
+
+    /// Column and row of a pixel of the region.
+    #[inline]
+    pub(super) fn place(&self, at: u32) -> (i32, i32) {
+        let (row, column) = (at >> self.shift, at & ((1 << self.shift) - 1));
+        (self.region.x0 + column as i32, self.region.y0 + row as i32)
+    }
+
+    /// True for pixels of the region that show something else.
+    pub(super) fn is_touched(&self, x: i32, y: i32) -> bool {
+        let r = self.region;
+        if x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1 {
+            return false;
+        }
+        self.who[((y - r.y0) as usize) << self.shift | (x - r.x0) as usize] != 0
+    }
+
+    /// Calls `visit(sample, (x, y), depth)` for every fragment of a face in the region.
+    #[inline]
+    pub(super) fn fragments(
+        &mut self,
+        face: &Face,
+        projector: &Projector,
+        cull: Cull,
+        width: usize,
+        mut visit: impl FnMut(usize, (i32, i32), u32),
+    ) {
+        if !face.screen.iter().any(ScreenVertex::is_outside) {
+            let corners = face.screen.map(|v| SmallCorner {
+                x: v.x,
+                y: v.y,
+                depth: v.depth,
+            });
+            match Small::new(corners, projector.bits(), cull, projector.image()) {
+                Fit::Nothing => return,
+                Fit::Small(small) => {
+                    let origin = (self.region.x0, self.region.y0);
+                    let count = small.list(origin, self.shift, &mut self.covered);
+                    for j in 0..count {
+                        let at = self.covered.at[j];
+                        let depth = small.depth(self.covered.above[j]);
+                        visit(self.sample(at, width), self.place(at), depth);
+                    }
+                    return;
+                }
+                Fit::Large => {}
+            }
+        }
+        face.pieces(projector, cull, |setup, _| {
+            setup.fragments(projector.image(), |x, y, depth| {
+                visit(y as usize * width + x as usize, (x, y), depth);
+            });
+        });
+    }
+}

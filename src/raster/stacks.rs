@@ -1,0 +1,278 @@
+//! Layers of one picture: every fragment at every sample, sorted by key (Atherton 1981's object buffer, which Lindstrom &
+//! Turk 2000 call attractive and too expensive for its time).
+//!
+//! What a look at a change needs of most samples is packed into one word: the nearest triangle, its luma, the luma of the
+//! reference, and the upper half of the depth. The rest of the depth lies in a plane of its own, and the fragments behind
+//! in blocks of an arena whose capacities are powers of two. A block that became too small is reused for other samples;
+//! blocks never shrink. Memory: 20 bytes for every sample and 8 to 16 for every fragment that is not the nearest, at the
+//! deepest moment of its sample.
+
+/// Samples in a row and column of a tile, as a power of two.
+pub(super) const TILE: u32 = 3;
+
+/// What a sample shows: id, luma, luma of the reference (where pixels have one sample), upper half of the depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shown(u64);
+
+impl Shown {
+    #[inline]
+    pub(super) fn id(self) -> u32 {
+        self.0 as u32
+    }
+
+    #[inline]
+    pub(super) fn luma(self) -> u8 {
+        (self.0 >> 32) as u8
+    }
+
+    #[inline]
+    pub(super) fn reference(self) -> u8 {
+        (self.0 >> 40) as u8
+    }
+
+    /// The least key that the sample may have: the upper half of the depth, and zeros.
+    #[inline]
+    pub(super) fn least_key(self) -> u64 {
+        self.0 & 0xffff_0000_0000_0000
+    }
+
+    fn set_key(&mut self, key: u64) {
+        self.0 = self.0 & 0x0000_ffff_0000_0000
+            | key & 0xffff_0000_0000_0000
+            | key & 0x0000_0000_ffff_ffff;
+    }
+}
+
+/// Where the fragments behind the nearest lie.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    start: u32,
+    /// Length << 5 | capacity class; class c > 0 holds 2^(c - 1) keys.
+    length_and_class: u32,
+}
+
+impl Block {
+    #[inline]
+    fn len(self) -> usize {
+        (self.length_and_class >> 5) as usize
+    }
+
+    #[inline]
+    fn class(self) -> usize {
+        (self.length_and_class & 31) as usize
+    }
+
+    #[inline]
+    fn range(self) -> std::ops::Range<usize> {
+        self.start as usize..self.start as usize + self.len()
+    }
+}
+
+/// Keys that a class has room for.
+fn capacity(class: usize) -> usize {
+    if class == 0 { 0 } else { 1 << (class - 1) }
+}
+
+/// The fragments of a picture.
+#[derive(Clone, Debug)]
+pub(super) struct Stacks {
+    nothing: u64,
+    shown: Vec<Shown>,
+    /// Depth of what is shown.
+    depths: Vec<u32>,
+    behind: Vec<Block>,
+    arena: Vec<u64>,
+    /// Blocks that are not in use, by class.
+    free: [Vec<u32>; 32],
+    /// A lower bound of the keys that are not the nearest, by tile.
+    bounds: Vec<u64>,
+}
+
+impl Stacks {
+    /// Stacks without a fragment, in so many tiles. `nothing` is what an empty sample shows, above every key;
+    /// `reference` may be empty.
+    pub(super) fn new(
+        samples: usize,
+        luma: u8,
+        reference: &[u8],
+        tiles: usize,
+        nothing: u64,
+    ) -> Self {
+        let shown = (0..samples).map(|at| {
+            let reference = reference.get(at).copied().unwrap_or(0);
+            let mut shown = Shown(u64::from(luma) << 32 | u64::from(reference) << 40);
+            shown.set_key(nothing);
+            shown
+        });
+        Self {
+            nothing,
+            shown: shown.collect(),
+            depths: vec![(nothing >> 32) as u32; samples],
+            behind: vec![Block::default(); samples],
+            arena: Vec::new(),
+            free: std::array::from_fn(|_| Vec::new()),
+            bounds: vec![nothing; tiles],
+        }
+    }
+
+    /// What an empty sample shows.
+    pub(super) fn nothing(&self) -> u64 {
+        self.nothing
+    }
+
+    /// What every sample shows.
+    #[inline]
+    pub(super) fn shown(&self) -> &[Shown] {
+        &self.shown
+    }
+
+    /// The nearest key at a sample.
+    #[inline]
+    pub(super) fn nearest(&self, at: usize) -> u64 {
+        u64::from(self.depths[at]) << 32 | u64::from(self.shown[at].id())
+    }
+
+    fn set_nearest(&mut self, at: usize, key: u64) {
+        self.shown[at].set_key(key);
+        self.depths[at] = (key >> 32) as u32;
+    }
+
+    /// Changes the luma of a sample.
+    #[inline]
+    pub(super) fn set_luma(&mut self, at: usize, luma: u8) {
+        let shown = &mut self.shown[at];
+        shown.0 = shown.0 & !(0xff << 32) | u64::from(luma) << 32;
+    }
+
+    /// A bound that no key in the tile is below, but for those that are the nearest of their samples.
+    #[inline]
+    pub(super) fn bound(&self, tile: usize) -> u64 {
+        self.bounds[tile]
+    }
+
+    /// The nearest key behind the first at a sample whose triangle is not `gone`.
+    #[inline]
+    pub(super) fn below(&self, at: usize, gone: impl Fn(u32) -> bool) -> u64 {
+        let keys = &self.arena[self.behind[at].range()];
+        let kept = keys.iter().find(|&&key| !gone(key as u32));
+        kept.copied().unwrap_or(self.nothing)
+    }
+
+    /// Adds a fragment to a sample of a tile.
+    #[inline]
+    pub(super) fn insert(&mut self, at: usize, tile: usize, key: u64) {
+        let nearest = self.nearest(at);
+        let behind = if key < nearest {
+            self.set_nearest(at, key);
+            if nearest == self.nothing {
+                return;
+            }
+            nearest
+        } else {
+            key
+        };
+        let bound = &mut self.bounds[tile];
+        *bound = (*bound).min(behind);
+        self.insert_behind(at, behind);
+    }
+
+    fn insert_behind(&mut self, at: usize, key: u64) {
+        let mut block = self.behind[at];
+        if block.len() == capacity(block.class()) {
+            block = self.grown(block);
+        }
+        let start = block.start as usize;
+        let mut place = start + block.len();
+        while place > start && self.arena[place - 1] > key {
+            self.arena[place] = self.arena[place - 1];
+            place -= 1;
+        }
+        self.arena[place] = key;
+        block.length_and_class += 1 << 5;
+        self.behind[at] = block;
+    }
+
+    /// A block of the next class with the same keys; the old one is free.
+    #[cold]
+    fn grown(&mut self, block: Block) -> Block {
+        let class = block.class() + 1;
+        let start = self.free[class].pop().unwrap_or_else(|| {
+            let start = self.arena.len() as u32;
+            self.arena.resize(self.arena.len() + capacity(class), 0);
+            start
+        });
+        self.arena.copy_within(block.range(), start as usize);
+        if block.class() > 0 {
+            self.free[block.class()].push(block.start);
+        }
+        Block {
+            start,
+            length_and_class: (block.len() as u32) << 5 | class as u32,
+        }
+    }
+
+    /// Takes out every fragment of a triangle at a sample. A triangle that clipping cut to pieces may have several there
+    /// after snapping, or none any more.
+    #[inline]
+    pub(super) fn remove(&mut self, at: usize, id: u32) {
+        let block = self.behind[at];
+        let keys = &mut self.arena[block.range()];
+        let mut kept = 0;
+        for i in 0..keys.len() {
+            let key = keys[i];
+            keys[kept] = key;
+            kept += usize::from(key as u32 != id);
+        }
+        let mut first = 0;
+        if self.shown[at].id() == id {
+            let next = if kept > 0 { keys[0] } else { self.nothing };
+            first = kept.min(1);
+            keys.copy_within(first..kept, 0);
+            self.set_nearest(at, next);
+        }
+        self.behind[at].length_and_class = ((kept - first) as u32) << 5 | block.class() as u32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+        #[test]
+        fn stacks_hold_what_was_put_in_and_not_taken_out(
+            steps in proptest::collection::vec((0..3_usize, 0..6_u32, 0..9_u32, any::<bool>()), 0..200),
+            gone in proptest::collection::vec(0..6_u32, 0..4),
+        ) {
+            let nothing = u64::from(u32::MAX) << 32 | 99;
+            let mut stacks = Stacks::new(3, 9, &[1, 2, 3], 1, nothing);
+            stacks.set_luma(0, 7);
+            let mut expected = vec![Vec::<u64>::new(); 3];
+            for (at, id, depth, insert) in steps {
+                let key = u64::from(depth) << 47 | u64::from(id);
+                if insert {
+                    stacks.insert(at, 0, key);
+                    expected[at].push(key);
+                } else {
+                    stacks.remove(at, id);
+                    expected[at].retain(|&k| k as u32 != id);
+                }
+                for (at, keys) in expected.iter_mut().enumerate() {
+                    keys.sort_unstable();
+                    let nearest = keys.first().copied().unwrap_or(nothing);
+                    prop_assert_eq!(stacks.nearest(at), nearest);
+                    let shown = stacks.shown()[at];
+                    prop_assert_eq!(shown.least_key(), nearest >> 48 << 48);
+                    prop_assert_eq!([shown.luma(), shown.reference()], [[7, 9, 9][at], 1 + at as u8]);
+                    let below = keys.iter().skip(1).find(|&&k| !gone.contains(&(k as u32)));
+                    prop_assert_eq!(stacks.below(at, |id| gone.contains(&id)), below.copied().unwrap_or(nothing));
+                    prop_assert!(keys.iter().skip(1).all(|&k| k >= stacks.bound(0)));
+                }
+            }
+        }
+    }
+}

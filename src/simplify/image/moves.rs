@@ -1,0 +1,139 @@
+//! Where a vertex should go: a search along its normal and two tangents, judged by the pictures.
+
+use glam::DVec3;
+
+use super::{PictureScratch, Pictures};
+use crate::{
+    collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
+    num::math,
+    raster::Unrender,
+};
+
+/// Farthest that a parabola is followed along one axis, in steps.
+const REACH: f64 = 2.0;
+
+/// Buffers of one thread.
+#[derive(Debug)]
+pub(super) struct Search<S> {
+    pub(super) star: Star,
+    pub(super) patch: Patch,
+    pub(super) pictures: PictureScratch<S>,
+}
+
+/// What a search found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Found {
+    /// The better position, and what going there would add to the error (negative), if there is one.
+    pub(super) better: Option<(DVec3, i64)>,
+    /// Positions whose pictures were drawn.
+    pub(super) evaluations: u64,
+}
+
+impl<S> Search<S> {
+    pub(super) fn new<E: Unrender<Scratch = S>>(pictures: &Pictures<E>) -> Self {
+        Self {
+            star: Star::default(),
+            patch: Patch::default(),
+            pictures: pictures.scratch(),
+        }
+    }
+
+    /// Fills the patch with the move of the star's vertex to `to`, rounded; `None` where that is not allowed or no move.
+    pub(super) fn prepare(&mut self, live: &LiveMesh, to: DVec3, rules: Rules) -> Option<DVec3> {
+        let Self { star, patch, .. } = self;
+        let to = star.admit(live, to, rules).ok()?;
+        if to == star.point {
+            return None;
+        }
+        star.patch(live, to, patch);
+        unmirrored(live, patch).ok()?;
+        unfolded(live, patch, rules).ok()?;
+        Some(to)
+    }
+
+    /// Looks for a better position of `vertex` at distances of `step` times the mean length of its edges; `turn` is the
+    /// angle of the tangents.
+    ///
+    /// Both ways along every axis, and then where the parabolas through the costs along the axes are lowest (at most
+    /// [`REACH`] steps away along each): a step of Newton's method with a diagonal matrix. The best of all that.
+    pub(super) fn run<E: Unrender<Scratch = S>>(
+        &mut self,
+        live: &LiveMesh,
+        pictures: &Pictures<E>,
+        rules: Rules,
+        vertex: u32,
+        [step, turn]: [f64; 2],
+    ) -> Found {
+        let mut found = Found::default();
+        self.star.gather(live, vertex);
+        let axes = match self.star.freedom {
+            Freedom::Fixed => return found,
+            Freedom::Normal => 1,
+            Freedom::Free => 3,
+        };
+        let Some(normal) = self.star.normal(live) else {
+            return found;
+        };
+        let length = step * self.star.mean_edge(live);
+        let origin = self.star.point;
+        let mut lowest = origin;
+        for axis in &basis(normal, turn)[..axes] {
+            let ways = [1.0, -1.0];
+            let costs = ways.map(|t| {
+                let to = origin + *axis * (t * length);
+                self.try_position(live, pictures, rules, to, &mut found)
+            });
+            if let [Some(f), Some(b)] = costs {
+                lowest += *axis * (lowest_of_parabola(f as f64, b as f64) * length);
+            }
+        }
+        self.try_position(live, pictures, rules, lowest, &mut found);
+        found
+    }
+
+    /// The cost at a position, where it is allowed; remembers the best.
+    fn try_position<E: Unrender<Scratch = S>>(
+        &mut self,
+        live: &LiveMesh,
+        pictures: &Pictures<E>,
+        rules: Rules,
+        to: DVec3,
+        found: &mut Found,
+    ) -> Option<i64> {
+        let to = self.prepare(live, to, rules)?;
+        let cost = pictures.cost(live, &self.patch, &mut self.pictures);
+        found.evaluations += 1;
+        if cost < found.better.map_or(0, |(_, best)| best) {
+            found.better = Some((to, cost));
+        }
+        Some(cost)
+    }
+}
+
+/// Where the parabola through (-1, `backward`), (0, 0) and (1, `forward`) is lowest within [`REACH`].
+fn lowest_of_parabola(forward: f64, backward: f64) -> f64 {
+    let curvature = forward + backward;
+    if curvature > 0.0 {
+        (0.5 * (backward - forward) / curvature).clamp(-REACH, REACH)
+    } else if forward < backward {
+        REACH
+    } else {
+        -REACH
+    }
+}
+
+/// An orthonormal basis: the normal and two tangents, turned about it by `turn` radians.
+fn basis(normal: DVec3, turn: f64) -> [DVec3; 3] {
+    let n = normal.abs();
+    let least = if n.x <= n.y && n.x <= n.z {
+        DVec3::X
+    } else if n.y <= n.z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let u = math::unit(normal.cross(least)).unwrap_or(DVec3::ZERO);
+    let v = normal.cross(u);
+    let (sin, cos) = (math::sin(turn), math::cos(turn));
+    [normal, u * cos + v * sin, v * cos - u * sin]
+}

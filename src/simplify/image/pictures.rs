@@ -1,0 +1,89 @@
+//! The pictures that drive a run, and what a patch of the mesh does to them.
+
+use super::{
+    ImageError,
+    change::{ImageChange, Slots},
+};
+use crate::{
+    collapse::{LiveMesh, Patch},
+    raster::{Scene, Unrender},
+    view::{Interpolation, ViewSet},
+};
+
+/// Pictures of a mesh as it is, and how far they are from those of the original.
+#[derive(Debug)]
+pub struct Pictures<E> {
+    error: ImageError<E>,
+    slots: Slots,
+    gouraud: bool,
+}
+
+/// Buffers of one thread.
+#[derive(Debug)]
+pub struct PictureScratch<S> {
+    engine: S,
+    change: ImageChange,
+}
+
+impl<E: Unrender> Pictures<E> {
+    /// Draws `live` in the views of `set`, to be compared with `original` (in the same frame).
+    #[must_use]
+    pub fn new(original: &Scene, live: &LiveMesh, set: &ViewSet) -> Self {
+        let (slots, scene) = Slots::of(live);
+        let mut views = set.views.iter();
+        Self {
+            error: ImageError::new(original, &scene, set),
+            slots,
+            gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
+        }
+    }
+
+    /// The pictures and their distance from the original's.
+    #[must_use]
+    pub fn error(&self) -> &ImageError<E> {
+        &self.error
+    }
+
+    /// Buffers for a thread.
+    #[must_use]
+    pub fn scratch(&self) -> PictureScratch<E::Scratch> {
+        PictureScratch {
+            engine: self.error.scratch(),
+            change: ImageChange::default(),
+        }
+    }
+
+    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
+    #[must_use]
+    pub fn lone_scratch(&self) -> PictureScratch<E::Scratch> {
+        PictureScratch {
+            engine: self.error.engine().lone_scratch(),
+            change: ImageChange::default(),
+        }
+    }
+
+    /// What the patch, not yet committed, would add to the error; negative where it makes the pictures better.
+    #[must_use]
+    pub fn cost(
+        &self,
+        live: &LiveMesh,
+        patch: &Patch,
+        scratch: &mut PictureScratch<E::Scratch>,
+    ) -> i64 {
+        let PictureScratch { engine, change } = scratch;
+        change.fill(&self.slots, live, patch, self.gouraud);
+        self.error.cost(&change.as_change(), engine)
+    }
+
+    /// Follows a patch, before or after `live` has it, and returns what it added to the error.
+    pub fn commit(
+        &mut self,
+        live: &LiveMesh,
+        patch: &Patch,
+        scratch: &mut PictureScratch<E::Scratch>,
+    ) -> i64 {
+        let PictureScratch { engine, change } = scratch;
+        change.fill(&self.slots, live, patch, self.gouraud);
+        self.error.commit(&change.as_change(), engine)
+    }
+}

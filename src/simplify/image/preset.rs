@@ -1,0 +1,87 @@
+//! Presets: recipes that set several options at once, each with what it buys and costs.
+//!
+//! What was tried (see also the README): samples are better spent on views and on 2 x 2 samples per pixel than on
+//! resolution, because polishing fits the noise of pictures with one sample; with polishing, twice the target is as
+//! good a start for the pictures as three times; flips after every sweep are worth their cost.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::{ImageOptions, Polish, Size, Start};
+use crate::{collapse::Schedule, view::ViewsName};
+
+/// A recipe for image-driven simplification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
+    /// The published method to the letter: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.
+    Paper,
+    /// For many meshes in little time: 24 views and two sweeps of polishing.
+    Fast,
+    /// 42 views with 2 x 2 samples per pixel and four sweeps of polishing.
+    #[default]
+    Default,
+    /// For a mesh that is made once and seen often: more views, larger pictures, cameras that turn between sweeps.
+    Best,
+}
+
+impl Preset {
+    /// When edges are evaluated again. The published method is lazy; evaluating the edges of a new vertex at once
+    /// notices costs that fall.
+    #[must_use]
+    pub const fn schedule(self) -> Schedule {
+        match self {
+            Self::Paper => Schedule::Lazy,
+            Self::Fast | Self::Default | Self::Best => Schedule::Semi,
+        }
+    }
+
+    /// The options of the recipe.
+    #[must_use]
+    pub fn options(self) -> ImageOptions {
+        let recipe = |views, per_triangle, samples, start, polish| ImageOptions {
+            preset: self,
+            views: ViewsName::Spiral(views),
+            size: Size::PerTriangle { per_triangle },
+            samples,
+            start: Start::Times(start),
+            polish,
+            ..Self::Paper.options()
+        };
+        let polish = |sweeps, cameras_every| Polish {
+            sweeps,
+            flips_every: 1,
+            cameras_every,
+        };
+        match self {
+            Self::Paper => ImageOptions {
+                preset: self,
+                views: ViewsName::Dodecahedron,
+                size: Size::Pixels(256),
+                samples: 1,
+                shading: super::DrivingShading::Flat,
+                specular: None,
+                interior_views: 0,
+                start: Start::Auto,
+                engine: super::EngineName::default(),
+                placement: super::super::memoryless::MemorylessOptions::default(),
+                polish: Polish::default(),
+            },
+            Self::Fast => recipe(24, 7, 2, 2, polish(2, 0)),
+            Self::Default => recipe(42, 7, 2, 2, polish(4, 0)),
+            Self::Best => recipe(64, 12, 2, 4, polish(16, 4)),
+        }
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Paper => "paper",
+            Self::Fast => "fast",
+            Self::Default => "default",
+            Self::Best => "best",
+        })
+    }
+}
