@@ -27,11 +27,10 @@ pub fn encode(mesh: &Mesh, visibility: &Visibility) -> Result<Vec<u8>> {
         Precision::F64 => "double",
     };
     let header = format!(
-        "ply\nformat binary_little_endian 1.0\ncomment lodmark {} visibility\nelement vertex {vertices}\n\
+        "ply\nformat binary_little_endian 1.0\ncomment lodmark visibility\nelement vertex {vertices}\n\
          property {real} x\nproperty {real} y\nproperty {real} z\nelement face {faces}\n\
          property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
-         property float quality\nend_header\n",
-        env!("CARGO_PKG_VERSION")
+         property float quality\nend_header\n"
     );
     let mut bytes = header.into_bytes();
     bytes.reserve(24 * vertices + 20 * faces);

@@ -16,9 +16,10 @@ use crate::{
     },
 };
 
-/// Real and imaginary parts of the quaternion that turns the octahedron: whole numbers without a common factor, so
-/// that the rotation is exact rational arithmetic.
-const ROTATION: [f64; 4] = [37.0, 11.0, 7.0, 17.0];
+/// Real and imaginary parts of the quaternion that turns the octahedron: whole numbers, so that it depends on no
+/// trigonometry. None of 258 cameras then looks within 0.7 degrees along a plane of two axes, or within 0.4 degrees
+/// along a plane halfway between two.
+const ROTATION: [f64; 4] = [18.0, 37.0, 12.0, 30.0];
 
 /// The cameras of a measurement.
 #[derive(Clone, Debug)]
@@ -159,7 +160,7 @@ mod tests {
         let towards: Vec<DVec3> = octahedron(3).into_iter().map(turned).collect();
         for n in octahedron(4) {
             let share = response(&towards, &weights, n);
-            assert!((0.993..1.0031).contains(&share), "{n}: {share}");
+            assert!((0.992..1.004).contains(&share), "{n}: {share}");
         }
     }
 
@@ -172,16 +173,14 @@ mod tests {
         }
         let handed = |d: &[DVec3]| d[0].dot(d[2].cross(d[4]));
         assert!((handed(&new) - handed(&old)).abs() < 1e-12);
-        for camera in all_turned() {
-            // Neither along nor across an axis, nor a diagonal.
-            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-                assert!(camera.dot(axis).abs() > 1e-3 && camera.dot(axis).abs() < 0.9999);
+        for camera in octahedron(3).into_iter().map(turned) {
+            let [x, y, z] = camera.to_array();
+            for across in [x, y, z] {
+                assert!(across.abs() > 0.0125, "{camera}");
             }
-            assert!(camera.dot(DVec3::ONE.normalize()).abs() < 0.9999);
+            for diagonal in [x + y, x - y, y + z, y - z, z + x, z - x] {
+                assert!(diagonal.abs() > 0.0107, "{camera}");
+            }
         }
-    }
-
-    fn all_turned() -> Vec<DVec3> {
-        octahedron(3).into_iter().map(turned).collect()
     }
 }

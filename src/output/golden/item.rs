@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{files, hidden, pictures, results};
+use super::{files, hidden, pictures, results, visibility};
 use crate::{
     Progress, Result,
     mesh::{Mesh, content_sha256},
@@ -55,6 +55,11 @@ pub const GROUPS: &[Group] = &[
         name: "pictures",
         about: "ids, depth, luma, colours and coverage",
         run: pictures::pictures,
+    },
+    Group {
+        name: "visibility",
+        about: "V(t) by every rule, hidden parts, colours",
+        run: visibility::measured,
     },
     Group {
         name: "simplify",

@@ -15,6 +15,7 @@ mod item;
 mod pictures;
 mod record;
 mod results;
+mod visibility;
 
 pub use folder::{RECORD_NAME, bless, check, picture_path};
 pub use item::{Collector, GROUPS, Group, Item};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lodmark::{
     Error, Progress, Silent, io,
     mesh::{self, Mesh, generate},
-    num::fixed::SubpixelBits,
+    num::{fixed::SubpixelBits, math},
     raster::{self, Scene},
     view::{Projection, Sphere, ViewSet, directions::octahedron, frame_of},
     visibility::{Alignment, CameraWeights, Options, UnseenRule, measure},
@@ -263,7 +263,7 @@ proptest! {
         let mesh = generate::interlocking_tori(12, 6);
         let mut scaled = mesh.clone().into_parts();
         for p in &mut scaled.positions {
-            *p *= (f64::from(exponent)).exp2();
+            *p *= math::scale_by_power_of_two(1.0, exponent);
         }
         let scaled = Mesh::new(scaled).expect("a mesh");
         let a = measure(&mesh, &small(0, 48), &Silent).expect("measures");

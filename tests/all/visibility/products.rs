@@ -4,6 +4,7 @@ use lodmark::{
     Error, Silent,
     io::{self, Format},
     mesh::{ChannelKind, Mesh, MeshParts, generate},
+    num::math,
     output::visibility_ply,
     raster::{self, Scene},
     view::{Projection, Sphere, ViewSet, directions::octahedron},
@@ -76,7 +77,11 @@ fn a_ring_too_few_of_a_half_hidden_tube_stays() {
     for i in 0..=along {
         for j in 0..around {
             let angle = f64::from(j) / f64::from(around) * std::f64::consts::TAU;
-            positions.push(glam::DVec3::new(f64::from(i), angle.cos(), angle.sin()));
+            positions.push(glam::DVec3::new(
+                f64::from(i),
+                math::cos(angle),
+                math::sin(angle),
+            ));
         }
     }
     let mut triangles = Vec::new();

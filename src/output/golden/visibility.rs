@@ -1,0 +1,116 @@
+//! Cases of visibility: V(t) of closed, open and nested shapes by every rule, parts that add up, and what is seen of
+//! them in colours.
+
+use super::{Collector, files::sphere_of};
+use crate::{
+    Result, Silent,
+    mesh::{Mesh, generate},
+    output::{png::Picture, visibility_ply},
+    raster::{self, Scene},
+    view::{Projection, ViewSet, directions::octahedron, frame_of},
+    visibility::{self, Options, Survey, Visibility, color, measure, remove_hidden},
+};
+
+pub(super) fn measured(collector: &mut Collector) -> Result<()> {
+    let small = Options {
+        octahedron: 1,
+        size: 72,
+        ..Options::default()
+    };
+    let rules = [
+        ("default", small),
+        (
+            "paper",
+            Options {
+                octahedron: 1,
+                size: 72,
+                ..Options::paper()
+            },
+        ),
+        (
+            "fractional",
+            Options {
+                fractional: true,
+                ..small
+            },
+        ),
+        (
+            "two-sided",
+            Options {
+                two_sided: true,
+                edge_limit: None,
+                ..small
+            },
+        ),
+    ];
+    for (name, mesh) in [
+        ("tori", generate::interlocking_tori(24, 12)),
+        ("shells", generate::shells(3, 2)),
+        (
+            "terrain",
+            generate::grid(12, 12, generate::Height::Polynomial),
+        ),
+        ("probe", generate::probe()),
+        // Most triangles are smaller than a pixel.
+        ("fine-torus", generate::torus(1.0, 0.4, 160, 80)),
+    ] {
+        for (rule, options) in &rules {
+            let found = measure(&mesh, options, &Silent)?;
+            numbers(collector, &format!("{name}/{rule}"), &found);
+        }
+        let found = measure(&mesh, &small, &Silent)?;
+        let kept = remove_hidden(&mesh, &found, 1)?;
+        collector.mesh(&format!("{name}/kept"), &kept);
+        let bytes = visibility_ply::encode(&mesh, &found)?;
+        collector.bytes(&format!("{name}/colored"), &bytes);
+    }
+    let mesh = generate::interlocking_tori(24, 12);
+    let (survey, table) = Survey::with_table(&mesh, &small, &Silent)?;
+    collector.plane("tori/table", table.packed());
+    numbers(collector, "tori/survey", &survey.finish(&mesh)?);
+    let steps = visibility::convergence(
+        &generate::interlocking_tori(8, 5),
+        &Options { size: 16, ..small },
+        &Silent,
+    )?;
+    let bits = steps.iter().flat_map(|s| [s.error, s.mesh]);
+    let bits = bits.map(|x| format!("{:016x}", x.to_bits()));
+    collector.text("convergence", bits.collect::<Vec<_>>().join(" "));
+    pictured(collector, &mesh, &survey.finish(&mesh)?)
+}
+
+fn numbers(collector: &mut Collector, name: &str, found: &Visibility) {
+    let bytes: Vec<u8> = found
+        .triangles()
+        .iter()
+        .flat_map(|v| v.to_bits().to_le_bytes())
+        .chain(found.views().iter().flat_map(|n| n.to_le_bytes()))
+        .collect();
+    collector.bytes(&format!("{name}/triangles"), &bytes);
+    let bits = [found.mesh(), found.never_seen_area()];
+    let bits = bits.map(|x| format!("{:016x}", x.to_bits()));
+    collector.text(
+        &format!("{name}/mesh"),
+        format!("{} {}", bits.join(" "), found.never_seen()),
+    );
+}
+
+/// The mesh in the colours of its visibility.
+fn pictured(collector: &mut Collector, mesh: &Mesh, found: &Visibility) -> Result<()> {
+    let directions = &octahedron(2)[20..21];
+    let sphere = sphere_of(mesh)?;
+    let set = ViewSet::around(&sphere, directions, 96, 96, Projection::Perspective)?;
+    let frame = frame_of(mesh);
+    let set = set.enter_frame(frame);
+    let colors = found.triangles().iter().map(|&v| {
+        let level = |x: u8| f64::from(x) / 255.0;
+        [color(v).map(level); 3]
+    });
+    let scene = Scene::of(&mesh.enter_frame(frame)).with_colors(colors.collect());
+    for view in &set.views {
+        let tones = raster::rgb(&scene, view, &set).tones;
+        collector.plane("tori/picture", &tones);
+        collector.shown(Picture::Rgb(tones));
+    }
+    Ok(())
+}
