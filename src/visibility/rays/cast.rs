@@ -153,5 +153,31 @@ mod tests {
                 }
             }
         }
+
+        #[test]
+        fn where_doubles_cannot_tell_exact_numbers_do(
+            direction in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
+            (x, y) in (0..24_i64, 0..16_i64),
+            [s, t, depth] in [0.01..0.9_f64, 0.01..0.9, -0.5..0.5],
+            third in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
+        ) {
+            let direction = DVec3::from_array(direction);
+            prop_assume!(direction.length_squared() > 1e-3);
+            let sphere = Sphere { center: DVec3::new(0.1, 0.2, 0.3), radius: 1.0 };
+            let set = ViewSet::around(&sphere, &[direction], 24, 16, Projection::Orthographic)
+                .expect("views");
+            // An edge through the centre of a pixel, up to the rounding of its ends.
+            let matrix = set.views[0].matrix;
+            let axis = |i: usize| DVec3::new(matrix[i][0], matrix[i][1], matrix[i][2]);
+            let on_ray = [(0, (2 * x + 1) as f64 / 24.0 - 1.0), (1, 1.0 - (2 * y + 1) as f64 / 16.0)]
+                .map(|(i, ndc)| axis(i) * ((ndc - matrix[i][3]) / axis(i).dot(axis(i))));
+            let centre = on_ray[0] + on_ray[1] + axis(2) * depth;
+            let along = (axis(0) * s + axis(1) * t) * 0.3;
+            let positions = vec![centre - along, centre + along * 0.7, centre + DVec3::from_array(third)];
+            let rays = Rays::new(&set.views[0], &set, &positions);
+            let ray = rays.ray(x, y);
+            prop_assert_eq!(rays.hit(ray, [0, 1, 2]), rays.exact_hit(ray, [0, 1, 2]));
+            prop_assert_eq!(rays.hit(ray, [1, 0, 2]).is_some(), rays.exact_hit(ray, [0, 1, 2]).is_some());
+        }
     }
 }

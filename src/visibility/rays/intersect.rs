@@ -288,8 +288,9 @@ impl<'a> Rays<'a> {
         (!culled).then_some(hit)
     }
 
+    /// [`Rays::hit`] without doubles and without culling.
     #[cold]
-    fn exact_hit(&self, ray: Ray, triangle: [u32; 3]) -> Option<Hit> {
+    pub(super) fn exact_hit(&self, ray: Ray, triangle: [u32; 3]) -> Option<Hit> {
         let [column, row] = [ray.column, ray.row].map(Exact::from);
         let [width, height] = self.size.map(Exact::from);
         let corners = triangle.map(|v| {
