@@ -23,7 +23,7 @@ use lodmark::{
 
 use crate::{
     cli::folder,
-    oracle::{embree, oracle},
+    oracle::{embree, oracle, say},
     rays::framed,
 };
 
@@ -44,11 +44,11 @@ fn write_views(exchange: &Path, set: &ViewSet) {
 }
 
 /// A model, welded, if it is there.
-fn model(name: &str) -> Option<Mesh> {
+pub(crate) fn model(name: &str) -> Option<Mesh> {
     let folder = std::env::var("LODMARK_MODELS").unwrap_or("../shared/models".into());
     let path = Path::new(&folder).join(name);
     if !path.exists() {
-        println!("skipped: {} is not there", path.display());
+        say(&format!("skipped: {} is not there", path.display()));
         return None;
     }
     Some(mesh::weld(io::read(&path).expect("reads").mesh).mesh)
@@ -96,8 +96,8 @@ fn against_embree(packages: &Path, mesh: &Mesh, set: &ViewSet) -> (Tally, f64) {
     (tally, far as f64 / same.max(1) as f64)
 }
 
-fn say(name: &str, tally: &Tally, far: f64) {
-    println!(
+fn tell(name: &str, tally: &Tally, far: f64) {
+    say(&format!(
         "{name}: {} pixels, {} unexplained, {} explained ({:.2e}: {} edge, {} depth tie, {} degenerate), depths {far:.1e}",
         tally.pixels,
         tally.unexplained(),
@@ -106,7 +106,7 @@ fn say(name: &str, tally: &Tally, far: f64) {
         tally.of(Class::Edge),
         tally.of(Class::DepthTie),
         tally.of(Class::Degenerate)
-    );
+    ));
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn embree_hits_what_the_rasterizer_shows() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
             let (mesh, set) = framed(&mesh, count, size, SubpixelBits::Sixteen, projection);
             let (tally, far) = against_embree(packages, &mesh, &set);
-            say(&format!("{name} {projection:?}"), &tally, far);
+            tell(&format!("{name} {projection:?}"), &tally, far);
             assert_eq!(tally.unexplained(), 0, "{name}: {:?}", tally.worst);
             // Faces that occur twice (in the probe) are a tie in all their pixels, and orthographic views of regular
             // scenes put pixel centres exactly on edges; for neither has Embree a rule.
@@ -259,11 +259,11 @@ fn the_paper_measure_is_that_of_the_same_rule_on_what_embree_casts() {
         let theirs = by_paper(packages, &mesh, &options);
         let ours = visibility::measure(&mesh, &options, &Silent).expect("measures");
         let theirs = mean(&mesh, &theirs, &theirs);
-        println!(
+        say(&format!(
             "{name}: V(M) by the rule of the paper, {} cameras of {size}: {:.4}, Embree {theirs:.4}",
             options.cameras(),
             ours.mesh()
-        );
+        ));
         assert!(
             (ours.mesh() - theirs).abs() <= 0.005,
             "{name}: {} {theirs}",
@@ -292,10 +292,10 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
         let k = if full() { 3 } else { 2 };
         let shadows = by_shadows(packages, &mesh, &directions::octahedron(k), step.max(1));
         let truth = mean(&mesh, &shadows, &shadows);
-        println!(
+        say(&format!(
             "{name}: V(M) by shadow rays, {} directions: {truth:.4}",
             directions::octahedron(k).len()
-        );
+        ));
         let (coarse, fine) = match (full(), name) {
             (true, _) => (&[(1, 120), (2, 240)][..], (3, 480)),
             (false, "tori") => (&[(0, 60)][..], (2, 480)),
@@ -318,10 +318,10 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
                 .map(|(ours, theirs)| (ours - theirs).abs())
                 .collect();
             let off = mean(&mesh, &off, &shadows);
-            println!(
+            say(&format!(
                 "{name}: {} cameras of {size}: {ours:.4}, mean difference of triangles {off:.4}",
                 options.cameras()
-            );
+            ));
             assert!(off < before, "{name}: {off} after {before}");
             before = off;
             if (octahedron, size) == fine {

@@ -21,6 +21,15 @@ fn script() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracles/embree.py")
 }
 
+/// A line for whoever looks at the output of a test.
+#[expect(
+    clippy::print_stderr,
+    reason = "the reason for skipping, or what was measured"
+)]
+pub(crate) fn say(line: &str) {
+    eprintln!("{line}");
+}
+
 /// Runs a program; what it printed, or what it said went wrong.
 fn run(command: &mut Command) -> Result<String, String> {
     let output = command
@@ -118,7 +127,7 @@ pub(crate) fn embree() -> Option<&'static Path> {
         Err(why) => {
             let required = std::env::var("LODMARK_REQUIRE_ORACLES").is_ok_and(|v| v == "1");
             assert!(!required, "Embree is required and cannot be had: {why}");
-            println!("skipped, because Embree cannot be had: {why}");
+            say(&format!("skipped, because Embree cannot be had: {why}"));
             None
         }
     }

@@ -312,4 +312,63 @@ fn the_tolerance_ends_where_it_says() {
         let shown = u64::from(1_000 + quanta) << 32;
         assert_eq!(class_of(&mesh, &set, [16, 16], shown), class, "{quanta}");
     }
+    // The same on a slope of a million quanta per pixel: 3,906 of them within the tolerance, for each triangle.
+    for (quanta, class) in [(7_000.0, Class::DepthTie), (8_500.0, Class::Occluded)] {
+        let layer = |above: f64| {
+            [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)]
+                .map(|(x, y)| DVec3::new(x, y, (1e9 + 1e6 * x + above) / 4_294_967_296.0))
+        };
+        let corners = [layer(quanta), layer(0.0)].into_iter().flatten();
+        let mesh = soup_of(corners.collect());
+        let set = grid_set(SubpixelBits::Sixteen, Cull::None);
+        assert_eq!(
+            class_of(&mesh, &set, [16, 16], 1_000_000 << 32),
+            class,
+            "{quanta}"
+        );
+    }
+}
+
+#[test]
+fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
+    // Depth grows to the right and is 0 this far from the centre of pixel (16, 16).
+    for (distance, class) in [
+        (0.9 * TOLERANCE, Class::Edge),
+        (1.1 * TOLERANCE, Class::Stray),
+        (9.0, Class::Stray),
+    ] {
+        let corners = [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)]
+            .map(|(x, y)| DVec3::new(x, y, (x - 0.5 - distance) / 32.0));
+        let (mesh, set) = (
+            soup_of(corners.to_vec()),
+            grid_set(SubpixelBits::Sixteen, Cull::None),
+        );
+        assert_eq!(class_of(&mesh, &set, [16, 16], 0), class, "{distance}");
+    }
+    for (cull, class) in [
+        (Cull::None, Class::Equal),
+        (Cull::Back, Class::Equal),
+        (Cull::Front, Class::Stray),
+    ] {
+        let z = 1_000.0 / 4_294_967_296.0 + 1e-12;
+        let corners = [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)].map(|(x, y)| DVec3::new(x, y, z));
+        let mesh = soup_of(corners.to_vec());
+        let mut set = grid_set(SubpixelBits::Sixteen, cull);
+        assert_eq!(
+            class_of(&mesh, &set, [16, 16], 1_000 << 32),
+            class,
+            "{cull:?}"
+        );
+        // Seen from the other side it is the other way round.
+        let mirrored = match cull {
+            Cull::Back => Class::Stray,
+            _ => Class::Equal,
+        };
+        set.views[0].matrix[0][0] = -0.0625;
+        assert_eq!(
+            class_of(&mesh, &set, [15, 16], 1_000 << 32),
+            mirrored,
+            "{cull:?}"
+        );
+    }
 }

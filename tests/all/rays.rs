@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Silent, io,
+    Error, Progress, Silent,
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
     raster::{self, Plane, Scene},
@@ -219,13 +219,9 @@ fn a_coarser_grid_moves_more_pixels_and_all_for_a_reason() {
 
 #[test]
 fn real_models_are_shown_as_rays_hit_them() {
-    let folder = std::env::var("LODMARK_MODELS").unwrap_or("../shared/models".into());
-    let bunny = std::path::Path::new(&folder).join("bunny.ply");
-    if !bunny.exists() {
-        println!("skipped: {} is not there", bunny.display());
+    let Some(mesh) = crate::embree::model("bunny.ply") else {
         return;
-    }
-    let mesh = io::read(&bunny).expect("reads").mesh;
+    };
     let (mesh, set) = framed(
         &mesh,
         2,

@@ -22,9 +22,9 @@ pub(super) fn is_exact(rays: &Rays<'_>, corners: &[u32], bits: SubpixelBits) -> 
         let scale = f64::from(bits.scale());
         let (steps, depth) = ([column * scale, row * scale], z / w * DEPTHS);
         let whole = |x: f64| x.fract().abs() <= 0.0;
-        if !(w > 0.0 && (0.0..DEPTHS).contains(&depth) && whole(depth))
-            || !(column.abs() <= band && row.abs() <= band && steps.into_iter().all(whole))
-        {
+        let inside = w > 0.0 && column.abs() <= band && row.abs() <= band;
+        let in_range = (0.0..DEPTHS).contains(&depth);
+        if !inside || !in_range || ![steps[0], steps[1], depth].into_iter().all(whole) {
             return false;
         }
         let [x, y, z, w] = rays.exactly(rays.position(v));

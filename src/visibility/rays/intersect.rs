@@ -78,7 +78,8 @@ impl Rounded {
         Self { value, error: 0.0 }
     }
 
-    fn rounded(value: f64, error: f64) -> Self {
+    /// The result of an operation on numbers with errors that make `error`.
+    fn after(value: f64, error: f64) -> Self {
         Self {
             value,
             error: error * (1.0 + Self::UNIT) + (value.abs() * Self::UNIT + Self::TINY),
@@ -88,16 +89,16 @@ impl Rounded {
 
 impl Arithmetic for Rounded {
     fn plus(&self, other: &Self) -> Self {
-        Self::rounded(self.value + other.value, self.error + other.error)
+        Self::after(self.value + other.value, self.error + other.error)
     }
 
     fn minus(&self, other: &Self) -> Self {
-        Self::rounded(self.value - other.value, self.error + other.error)
+        Self::after(self.value - other.value, self.error + other.error)
     }
 
     fn times(&self, other: &Self) -> Self {
         let (a, b) = (self.value.abs(), other.value.abs());
-        Self::rounded(
+        Self::after(
             self.value * other.value,
             a * other.error + self.error * (b + other.error),
         )
@@ -273,7 +274,7 @@ impl<'a> Rays<'a> {
                 if high < 0.0 {
                     return Some(None);
                 }
-                (low >= 0.0 && low == high).then_some(Some(Hit {
+                (low >= 0.0 && low >= high).then_some(Some(Hit {
                     depth: low as u32,
                     front,
                 }))
