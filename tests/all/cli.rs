@@ -396,7 +396,7 @@ fn an_existing_output_is_replaced_in_one_step() {
 fn no_number_of_threads_changes_a_byte_of_a_result() {
     let dir = folder();
     put(&dir, "in.ply", &generate::torus(1.0, 0.4, 24, 16));
-    for method in ["image", "memoryless", "quadric"] {
+    for method in ["image", "memoryless", "quadric", "visibility"] {
         let mut all = Vec::new();
         for threads in ["1", "2", "3", "8"] {
             let mut words = vec![
@@ -416,6 +416,9 @@ fn no_number_of_threads_changes_a_byte_of_a_result() {
             ];
             if method == "image" {
                 words.extend(["--size", "64", "--start-triangles", "none"]);
+            }
+            if method == "visibility" {
+                words.extend(["--cameras", "18", "--visibility-size", "64"]);
             }
             expect(&dir, 0, &words);
             let read = |name: &str| fs::read(dir.path().join(name)).expect("written");

@@ -67,18 +67,18 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
 /// Plate 3 of Lindstrom & Turk 2000: an encased object, and what is left of it when none, half and all of the 20 views
 /// look into the casing. Above from outside, below through the fronts.
 fn interiors(collector: &mut Collector) -> Result<()> {
-    let mesh = canonical(&generate::encased(1)).mesh;
+    let mesh = canonical(&generate::encased(2)).mesh;
     let mut meshes = vec![mesh.clone()];
     for interior_views in [0, 10, 20] {
         let own = ImageOptions {
-            size: Size::Pixels(64),
-            start: Start::Input,
+            size: Size::Pixels(48),
+            start: Start::Triangles(1_100),
             interior_views,
             ..ImageOptions::default()
         };
         let options = Options {
             method: MethodOptions::Image(own),
-            ..Options::image(Amount::Triangles(200))
+            ..Options::image(Amount::Triangles(640))
         };
         let outcome = simplify(&mesh, &options, &Silent)?;
         let name = format!("interior-views/{interior_views:02}");
