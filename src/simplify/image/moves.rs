@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PictureScratch, Pictures};
+use super::{Deviation, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
     num::math,
@@ -61,6 +61,7 @@ impl<S> Search<S> {
         live: &LiveMesh,
         pictures: &Pictures<E>,
         rules: Rules,
+        deviation: Option<&Deviation>,
         vertex: u32,
         [step, turn]: [f64; 2],
     ) -> Found {
@@ -88,6 +89,12 @@ impl<S> Search<S> {
             }
         }
         self.try_position(live, pictures, rules, lowest, &mut found);
+        if let (Some((to, cost)), Some(deviation)) = (found.better, deviation)
+            && self.prepare(live, to, rules).is_some()
+            && !deviation.pays(live, &self.patch, -cost as f64, pictures.error().sum() as f64)
+        {
+            found.better = None;
+        }
         found
     }
 

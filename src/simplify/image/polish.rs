@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Pictures,
+    Deviation, Pictures,
     moves::{Found, Search},
 };
 use crate::{
@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// How much polishing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Polish {
     /// Sweeps over all vertices; 0 is no polishing.
@@ -35,6 +35,9 @@ pub struct Polish {
     pub flips_every: u32,
     /// Cameras are turned after every so many sweeps; 0 is never.
     pub cameras_every: u32,
+    /// How much the share of the distance from the original weighs against the share of the image error in a change;
+    /// 0 is nothing. See [`Deviation`].
+    pub deviation_weight: f64,
 }
 
 /// What the polishing did. The same for every number of threads.
@@ -86,6 +89,7 @@ pub fn polish<E: Unrender>(
     pictures: Pictures<E>,
     options: Polish,
     rules: Rules,
+    deviation: Option<&Deviation>,
     fresh: &mut dyn FnMut(&LiveMesh, u32) -> Option<Pictures<E>>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
@@ -104,6 +108,7 @@ pub fn polish<E: Unrender>(
         live,
         pictures,
         rules,
+        deviation,
         progress,
         changes: Changes::default(),
         clock: 1,
@@ -142,6 +147,7 @@ struct Polisher<'a, E: Unrender> {
     live: &'a mut LiveMesh,
     pictures: Pictures<E>,
     rules: Rules,
+    deviation: Option<&'a Deviation>,
     progress: &'a dyn Progress,
     /// By vertex id.
     stands: Vec<Stand>,
@@ -188,6 +194,7 @@ impl<E: Unrender> Polisher<'_, E> {
                     polisher.live,
                     &polisher.pictures,
                     polisher.rules,
+                    polisher.deviation,
                     v,
                     [step, turn],
                 )
@@ -290,19 +297,20 @@ impl<E: Unrender> Polisher<'_, E> {
             self.progress.step("flip", 0, 0)?;
             self.take_strangers(&mut waiting, &mut batch, Self::around_edge);
             let now = self.clock;
-            let costs = self.in_parallel(&batch, |polisher, search, &e| {
+            let outcomes = self.in_parallel(&batch, |polisher, search, &e| {
                 let patch = polisher.flip(e, &mut search.patch)?;
-                Some(
-                    polisher
-                        .pictures
-                        .cost(polisher.live, patch, &mut search.pictures),
-                )
+                let (live, pictures) = (&*polisher.live, &polisher.pictures);
+                let cost = pictures.cost(live, patch, &mut search.pictures);
+                let sum = pictures.error().sum() as f64;
+                let pays = |d: &Deviation| d.pays(live, patch, -cost as f64, sum);
+                let good = cost < 0 && polisher.deviation.is_none_or(pays);
+                Some(good)
             });
             let mut committed = false;
-            for (&e, cost) in batch.iter().zip(costs) {
+            for (&e, good) in batch.iter().zip(outcomes) {
                 self.tried[e as usize] = now;
-                self.counters.evaluations += u64::from(cost.is_some());
-                if cost.is_none_or(|c| c >= 0) {
+                self.counters.evaluations += u64::from(good.is_some());
+                if good != Some(true) {
                     continue;
                 }
                 let mut patch = std::mem::take(&mut self.own.patch);

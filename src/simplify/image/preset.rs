@@ -40,11 +40,11 @@ impl Preset {
     /// The options of the recipe.
     #[must_use]
     pub fn options(self) -> ImageOptions {
-        let recipe = |views, per_triangle, samples, start, polish| ImageOptions {
+        let recipe = |views, per_triangle, start, polish| ImageOptions {
             preset: self,
             views: ViewsName::Spiral(views),
             size: Size::PerTriangle { per_triangle },
-            samples,
+            samples: 2,
             start: Start::Times(start),
             polish,
             ..Self::Paper.options()
@@ -53,6 +53,7 @@ impl Preset {
             sweeps,
             flips_every: 1,
             cameras_every,
+            deviation_weight: 0.3,
         };
         match self {
             Self::Paper => ImageOptions {
@@ -68,9 +69,9 @@ impl Preset {
                 placement: super::super::memoryless::MemorylessOptions::default(),
                 polish: Polish::default(),
             },
-            Self::Fast => recipe(24, 7, 2, 2, polish(2, 0)),
-            Self::Default => recipe(42, 7, 2, 2, polish(4, 0)),
-            Self::Best => recipe(64, 12, 2, 4, polish(16, 4)),
+            Self::Fast => recipe(42, 1, 1.35, polish(1, 0)),
+            Self::Default => recipe(42, 4, 1.7, polish(4, 0)),
+            Self::Best => recipe(56, 9, 2.5, polish(10, 4)),
         }
     }
 }
