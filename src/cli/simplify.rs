@@ -13,7 +13,9 @@ use crate::{
     mesh::{self, content_sha256},
     simplify::{
         Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
-        image::{DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start},
+        image::{
+            DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start,
+        },
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify,
@@ -416,7 +418,11 @@ fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Te
             polish.moves, polish.flips, polish.evaluations
         ));
         for (i, [before, after]) in polish.cameras.iter().enumerate() {
-            let before_that = if i == 0 { "" } else { ", which had driven nothing" };
+            let before_that = if i == 0 {
+                ""
+            } else {
+                ", which had driven nothing"
+            };
             terminal.say(&format!(
                 "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
                 i + 1

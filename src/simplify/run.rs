@@ -2,7 +2,9 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{self, Deviation, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
+    image::{
+        self, Deviation, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start,
+    },
     memoryless::Memoryless,
     quadric::QuadricMethod,
 };

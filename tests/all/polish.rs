@@ -135,10 +135,8 @@ fn both_engines_polish_alike() {
         let worse = pushed(&mesh, 0.05, 3);
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (views, set) in view_sets(&sphere).into_iter().take(3) {
-            let (a, _, _, layers) =
-                polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
-            let (b, _, _, buckets) =
-                polished::<BucketEngine>(&mesh, &worse, &set, THREE, &mut ());
+            let (a, _, _, layers) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
+            let (b, _, _, buckets) = polished::<BucketEngine>(&mesh, &worse, &set, THREE, &mut ());
             assert_eq!(a.to_mesh(), b.to_mesh(), "{name}, {views}");
             assert_eq!(layers, buckets, "{name}, {views}");
         }
@@ -432,7 +430,10 @@ fn a_texture_does_not_slide_with_the_vertices() {
             let expected = affine(moved.positions()[v as usize]);
             let found = moved.attributes().value(channel, w);
             for (e, f) in expected.iter().zip(found) {
-                assert!((e - f).abs() < 1e-6, "vertex {v}: {found:?}, not {expected:?}");
+                assert!(
+                    (e - f).abs() < 1e-6,
+                    "vertex {v}: {found:?}, not {expected:?}"
+                );
             }
         }
     }
@@ -497,7 +498,10 @@ fn a_flip_crosses_no_seam_no_border_and_no_fold() {
     assert_eq!(flips(&quad(vec![0, 1])).iter().filter(inside).count(), 0);
     // Every edge of a tetrahedron has its flip there already.
     assert_eq!(
-        flips(&generate::tetrahedron()).iter().filter(inside).count(),
+        flips(&generate::tetrahedron())
+            .iter()
+            .filter(inside)
+            .count(),
         0
     );
     // Normals that differ on both sides forbid every flip, equal ones do not.

@@ -70,3 +70,45 @@ impl Deviation {
         area * 0.25 * distances.iter().sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{mesh::Mesh, num::Frame};
+
+    /// A square of side 2 with a vertex in its middle, which is `height` above it.
+    fn tent(height: f64) -> Mesh {
+        let positions = vec![
+            DVec3::new(0.0, 0.0, height),
+            DVec3::new(-1.0, -1.0, 0.0),
+            DVec3::new(1.0, -1.0, 0.0),
+            DVec3::new(1.0, 1.0, 0.0),
+            DVec3::new(-1.0, 1.0, 0.0),
+        ];
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+        Mesh::from_triangles(positions, triangles).expect("valid")
+    }
+
+    #[test]
+    fn only_a_gain_that_outweighs_the_added_distance_pays() {
+        let flat = LiveMesh::new(&tent(0.0), Frame::default());
+        let square: Vec<_> = (0..4).filter_map(|t| flat.points(t)).collect();
+        let live = LiveMesh::new(&tent(0.125), Frame::default());
+        assert!(Deviation::new(square.clone(), &live, 0.0).is_none());
+        let deviation = Deviation::new(square, &live, 0.5).expect("a surface");
+        // Of every face: a third of the height at the centroid, halves at two midpoints, none at the third.
+        let area = 0.5 * 2.0 * length(DVec3::new(0.0, 1.0, 0.125));
+        let expected = 4.0 * area * 0.25 * (0.125 / 3.0 + 0.0625 + 0.0625);
+        assert!((deviation.total - expected).abs() < 1e-12);
+        let mut patch = Patch::default();
+        let mut pays = |height: f64, gain: f64| {
+            patch.set_move(&live, 0, DVec3::new(0.0, 0.0, height));
+            deviation.pays(&live, &patch, gain, 100.0)
+        };
+        // Twice as high is a little more than twice the deviation: half of a share of a good 1.
+        assert!(!pays(0.25, 45.0));
+        assert!(pays(0.25, 60.0));
+        assert!(pays(0.05, 1e-9), "closer is free");
+        assert!(pays(-0.05, 1e-9), "on the other side as well");
+    }
+}

@@ -91,7 +91,12 @@ impl<S> Search<S> {
         self.try_position(live, pictures, rules, lowest, &mut found);
         if let (Some((to, cost)), Some(deviation)) = (found.better, deviation)
             && self.prepare(live, to, rules).is_some()
-            && !deviation.pays(live, &self.patch, -cost as f64, pictures.error().sum() as f64)
+            && !deviation.pays(
+                live,
+                &self.patch,
+                -cost as f64,
+                pictures.error().sum() as f64,
+            )
         {
             found.better = None;
         }

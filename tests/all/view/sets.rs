@@ -126,7 +126,8 @@ fn turned_directions_keep_their_angles_and_never_come_back() {
         }
         for earlier in &rounds[..r] {
             assert!(
-                (turned[0] - earlier[0]).length() > 1e-3 || (turned[5] - earlier[5]).length() > 1e-3
+                (turned[0] - earlier[0]).length() > 1e-3
+                    || (turned[5] - earlier[5]).length() > 1e-3
             );
         }
     }
