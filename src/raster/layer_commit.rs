@@ -16,13 +16,14 @@ impl LayerView {
         for i in 0..look.count {
             let at = look.touched[i];
             let sample = look.sample(at, self.width);
-            self.recolor(sample, look.tones[i]);
+            let (x, y) = look.place(at);
+            self.recolor(x, y, look.tones[i]);
             let before = self.stacks.shown()[sample].id();
             look.swaps.push((before, look.slots[at as usize] as u32));
         }
         for i in 0..look.restyled.len() {
-            let (sample, tone) = look.restyled[i];
-            self.recolor(sample as usize, tone);
+            let ([x, y], tone) = look.restyled[i];
+            self.recolor(i32::from(x), i32::from(y), tone);
         }
         // (2) The layers.
         let (cull, width, columns) = (self.view.cull, self.width, self.tile_columns);
@@ -56,9 +57,10 @@ impl LayerView {
         }
     }
 
-    fn recolor(&mut self, sample: usize, tone: u8) {
+    fn recolor(&mut self, x: i32, y: i32, tone: u8) {
+        let sample = y as usize * self.width + x as usize;
         if self.samples > 0 {
-            let pixel = self.pixel(sample);
+            let pixel = self.pixel(x, y);
             let old = self.stacks.shown()[sample].luma();
             let sum = &mut self.sums[pixel][1];
             *sum = *sum - u16::from(old) + u16::from(tone);

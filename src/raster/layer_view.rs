@@ -105,7 +105,7 @@ impl LayerView {
         if set.samples > 1 {
             pictures.sums = reference.iter().map(|&y0| [y0, 0]).collect();
             for at in 0..width * height {
-                let pixel = pictures.pixel(at);
+                let pixel = pictures.pixel((at % width) as i32, (at / width) as i32);
                 pictures.sums[pixel][1] += u16::from(pictures.stacks.shown()[at].luma());
             }
         }
@@ -208,12 +208,8 @@ impl LayerView {
 
     /// The pixel of a sample.
     #[inline]
-    pub(super) fn pixel(&self, at: usize) -> usize {
-        if self.samples == 0 {
-            return at;
-        }
-        let (y, x) = (at / self.width, at % self.width);
-        (y >> self.samples) * (self.width >> self.samples) + (x >> self.samples)
+    pub(super) fn pixel(&self, x: i32, y: i32) -> usize {
+        (y as usize >> self.samples) * (self.width >> self.samples) + (x as usize >> self.samples)
     }
 
     /// A triangle of the model on this screen.

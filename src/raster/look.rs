@@ -40,7 +40,7 @@ pub(super) struct Look {
     pub(super) count: usize,
     pub(super) tones: Vec<u8>,
     /// Samples of the picture that only look different, and their luma afterwards.
-    pub(super) restyled: Vec<(u32, u8)>,
+    pub(super) restyled: Vec<([u16; 2], u8)>,
     /// After a commit: for every touched sample the triangle that it showed and the one it shows; ids above the last
     /// triangle are the background.
     pub(super) swaps: Vec<(u32, u32)>,
@@ -174,16 +174,19 @@ impl LayerView {
         look.count = count;
     }
 
-    /// Whether a fresh key that is not below the slot of a pixel is seen there all the same.
+    /// Whether a fresh key is seen at a pixel, where [`Look::may_win`] has not ruled it out.
     #[inline]
-    fn is_seen(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
-        let now = match look.who[at as usize] {
-            0 if key >> 48 > look.slots[at as usize] >> 48 => return false,
-            0 => self.stacks.nearest(look.sample(at, self.width)),
-            1 => self.behind(around, look, at),
-            _ => return false,
-        };
-        key < now
+    fn wins(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
+        key < look.slots[at as usize] || self.wins_exactly(around, look, at, key)
+    }
+
+    /// Whether a fresh key that is not below the slot of a pixel is seen there all the same.
+    fn wins_exactly(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
+        match look.who[at as usize] {
+            0 => key < self.stacks.nearest(look.sample(at, self.width)),
+            1 => key < self.behind(around, look, at),
+            _ => false,
+        }
     }
 
     /// The key that a pixel shows when the triangles that go are gone and nothing comes.
@@ -239,7 +242,7 @@ impl LayerView {
         for j in 0..covered {
             let (at, above) = (look.covered.at[j], look.covered.above[j]);
             let key = u64::from(small.depth(above)) << 32 | u64::from(id);
-            if key < look.slots[at as usize] || self.is_seen(around, look, at, key) {
+            if look.may_win(at, key) && self.wins(around, look, at, key) {
                 look.win(at, key, number);
                 any = true;
             }
@@ -255,7 +258,7 @@ impl LayerView {
         setup.fragments(region, |x, y, depth| {
             let at = ((y - region.y0) as u32) << look.shift | (x - region.x0) as u32;
             let key = u64::from(depth) << 32 | u64::from(id);
-            if key < look.slots[at as usize] || self.is_seen(around, look, at, key) {
+            if look.may_win(at, key) && self.wins(around, look, at, key) {
                 look.win(at, key, number);
                 any = true;
             }
@@ -350,7 +353,7 @@ impl LayerView {
                         Some(setup) => face.paint.luma(setup, x, y),
                         None => self.luma_at(&face, (x, y)),
                     };
-                    look.restyled.push(((start + x as usize) as u32, luma));
+                    look.restyled.push(([x as u16, y as u16], luma));
                 }
             }
         }
@@ -368,8 +371,8 @@ impl LayerView {
             for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
                 total += add(look.sample(at, self.width), tone);
             }
-            for &(sample, tone) in &look.restyled {
-                total += add(sample as usize, tone);
+            for &([x, y], tone) in &look.restyled {
+                total += add(usize::from(y) * self.width + usize::from(x), tone);
             }
             return total;
         }
@@ -377,18 +380,20 @@ impl LayerView {
         let (mut deltas, mut pixels) = (std::mem::take(deltas), std::mem::take(pixels));
         deltas.resize(self.sums.len(), 0);
         pixels.clear();
-        let mut add = |sample: usize, tone: u8| {
-            let pixel = self.pixel(sample);
+        let mut add = |x: i32, y: i32, tone: u8| {
+            let sample = y as usize * self.width + x as usize;
+            let pixel = self.pixel(x, y);
             if deltas[pixel] == 0 {
                 pixels.push(pixel as u32);
             }
             deltas[pixel] += i32::from(tone) - i32::from(shown[sample].luma());
         };
         for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
-            add(look.sample(at, self.width), tone);
+            let (x, y) = look.place(at);
+            add(x, y, tone);
         }
-        for &(sample, tone) in &look.restyled {
-            add(sample as usize, tone);
+        for &([x, y], tone) in &look.restyled {
+            add(i32::from(x), i32::from(y), tone);
         }
         for &pixel in &pixels {
             let delta = std::mem::take(&mut deltas[pixel as usize]);
@@ -418,6 +423,12 @@ impl Look {
     pub(super) fn enter(&mut self, region: Region) {
         self.region = region;
         self.shift = region.width().next_power_of_two().trailing_zeros();
+    }
+
+    /// False where a fresh key is certainly not seen at a pixel.
+    #[inline]
+    fn may_win(&self, at: u32, key: u64) -> bool {
+        key >> 48 <= self.slots[at as usize] >> 48 || self.who[at as usize] == 1
     }
 
     /// Gives a pixel to a piece.

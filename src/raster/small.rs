@@ -11,6 +11,9 @@ use crate::{num::fixed::SubpixelBits, view::Cull};
 /// Longest side of the bounding box, in sub-pixels.
 const LIMIT: i32 = 1 << 15;
 
+/// Up to this width, in pixels, testing every pixel of a row is cheaper than three divisions.
+const TESTED_WIDTH: usize = 10;
+
 /// 2^52: added to a double in [0, 2^51), it leaves the nearest integer in the low bits.
 const ROUND: f64 = 4_503_599_627_370_496.0;
 
@@ -140,6 +143,30 @@ impl Small {
         let mut edges = self.edges;
         let mut sum = self.above;
         let mut count = 0;
+        if width > TESTED_WIDTH {
+            for _ in 0..height {
+                let (first, end) = self.span(&edges, width as i32);
+                if first < end {
+                    let length = (end - first) as usize;
+                    let at = &mut at[count..count + length];
+                    let above = &mut above[count..count + length];
+                    let mut i = start + first as u32;
+                    let mut n = sum.wrapping_add(self.above_x.wrapping_mul(i64::from(first)));
+                    for (at, above) in at.iter_mut().zip(above) {
+                        (*at, *above) = (i, n);
+                        i += 1;
+                        n = n.wrapping_add(self.above_x);
+                    }
+                    count += length;
+                }
+                start += 1 << shift;
+                for (e, step) in edges.iter_mut().zip(self.step_y) {
+                    *e = e.wrapping_add(step);
+                }
+                sum = sum.wrapping_add(self.above_y);
+            }
+            return count;
+        }
         for _ in 0..height {
             let [mut e0, mut e1, mut e2] = edges;
             let mut n = sum;
@@ -160,6 +187,25 @@ impl Small {
             sum = sum.wrapping_add(self.above_y);
         }
         count
+    }
+
+    /// First covered column of a row and one past the last, from the first column of the bounds; `edges` are those of
+    /// the row.
+    #[inline]
+    fn span(&self, edges: &[i32; 3], width: i32) -> (i32, i32) {
+        let (mut first, mut end) = (0, width);
+        for (&e, &step) in edges.iter().zip(&self.step_x) {
+            if step > 0 {
+                if e < 0 {
+                    first = first.max((step - 1 - e) / step);
+                }
+            } else if e < 0 {
+                return (0, 0);
+            } else if step < 0 {
+                end = end.min(e / -step + 1);
+            }
+        }
+        (first, end)
     }
 
     /// The depth of a covered pixel: `floor(above / area)` more than the least depth.

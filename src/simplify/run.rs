@@ -3,7 +3,8 @@
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
     image::{
-        self, Deviation, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start,
+        self, Deviation, EngineName, ImageDriven, ImageOptions, Limits, Pictures, PolishCounters,
+        Start,
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
@@ -191,8 +192,10 @@ impl<'a> Run<'a> {
                 &mut self.live,
                 pictures,
                 own.polish,
-                self.options.rules,
-                deviation.as_ref(),
+                Limits {
+                    rules: self.options.rules,
+                    deviation: deviation.as_ref(),
+                },
                 &mut fresh,
                 &mut self.recorder,
                 self.progress,

@@ -20,7 +20,7 @@ pub use cost::ImageError;
 pub use deviation::Deviation;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use pictures::{PictureScratch, Pictures};
-pub use polish::{Polish, PolishCounters, polish};
+pub use polish::{Limits, Polish, PolishCounters, polish};
 pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};

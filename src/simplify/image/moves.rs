@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Deviation, PictureScratch, Pictures};
+use super::{Limits, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
     num::math,
@@ -60,11 +60,11 @@ impl<S> Search<S> {
         &mut self,
         live: &LiveMesh,
         pictures: &Pictures<E>,
-        rules: Rules,
-        deviation: Option<&Deviation>,
+        limits: Limits<'_>,
         vertex: u32,
         [step, turn]: [f64; 2],
     ) -> Found {
+        let Limits { rules, deviation } = limits;
         let mut found = Found::default();
         self.star.gather(live, vertex);
         let axes = match self.star.freedom {

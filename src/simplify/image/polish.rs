@@ -40,6 +40,15 @@ pub struct Polish {
     pub deviation_weight: f64,
 }
 
+/// What polishing may not do.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Limits<'a> {
+    /// As for collapses.
+    pub rules: Rules,
+    /// What a change must pay for.
+    pub deviation: Option<&'a Deviation>,
+}
+
 /// What the polishing did. The same for every number of threads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PolishCounters {
@@ -88,8 +97,7 @@ pub fn polish<E: Unrender>(
     live: &mut LiveMesh,
     pictures: Pictures<E>,
     options: Polish,
-    rules: Rules,
-    deviation: Option<&Deviation>,
+    limits: Limits<'_>,
     fresh: &mut dyn FnMut(&LiveMesh, u32) -> Option<Pictures<E>>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
@@ -107,8 +115,7 @@ pub fn polish<E: Unrender>(
         pool: Mutex::new(Vec::new()),
         live,
         pictures,
-        rules,
-        deviation,
+        limits,
         progress,
         changes: Changes::default(),
         clock: 1,
@@ -146,8 +153,7 @@ pub fn polish<E: Unrender>(
 struct Polisher<'a, E: Unrender> {
     live: &'a mut LiveMesh,
     pictures: Pictures<E>,
-    rules: Rules,
-    deviation: Option<&'a Deviation>,
+    limits: Limits<'a>,
     progress: &'a dyn Progress,
     /// By vertex id.
     stands: Vec<Stand>,
@@ -193,8 +199,7 @@ impl<E: Unrender> Polisher<'_, E> {
                 search.run(
                     polisher.live,
                     &polisher.pictures,
-                    polisher.rules,
-                    polisher.deviation,
+                    polisher.limits,
                     v,
                     [step, turn],
                 )
@@ -250,7 +255,7 @@ impl<E: Unrender> Polisher<'_, E> {
             return false;
         };
         self.own.star.gather(self.live, vertex);
-        if self.own.prepare(self.live, to, self.rules).is_none() {
+        if self.own.prepare(self.live, to, self.limits.rules).is_none() {
             return false;
         }
         let kept = self.keep(stale, observer);
@@ -303,7 +308,7 @@ impl<E: Unrender> Polisher<'_, E> {
                 let cost = pictures.cost(live, patch, &mut search.pictures);
                 let sum = pictures.error().sum() as f64;
                 let pays = |d: &Deviation| d.pays(live, patch, -cost as f64, sum);
-                let good = cost < 0 && polisher.deviation.is_none_or(pays);
+                let good = cost < 0 && polisher.limits.deviation.is_none_or(pays);
                 Some(good)
             });
             let mut committed = false;
@@ -328,8 +333,8 @@ impl<E: Unrender> Polisher<'_, E> {
     /// The flip of an edge, where it is allowed.
     fn flip<'p>(&self, edge: u32, patch: &'p mut Patch) -> Option<&'p Patch> {
         let ends = self.live.edge(edge)?;
-        flip(self.live, ends, self.rules, patch).ok()?;
-        unfolded(self.live, patch, self.rules).ok()?;
+        flip(self.live, ends, self.limits.rules, patch).ok()?;
+        unfolded(self.live, patch, self.limits.rules).ok()?;
         Some(patch)
     }
 
