@@ -23,7 +23,7 @@ pub enum Preset {
     /// 42 views of 96 x 96 pixels, images from 1.7 times the target, four sweeps of polishing.
     #[default]
     Default,
-    /// 56 views of 120 x 120 pixels, images from 2.5 times the target, ten sweeps, cameras turned twice.
+    /// 56 views of 120 x 120 pixels, images from 2.5 times the target, twelve sweeps, cameras turned twice.
     Best,
 }
 
@@ -50,11 +50,11 @@ impl Preset {
             polish,
             ..Self::Paper.options()
         };
-        let polish = |sweeps, cameras_every| Polish {
+        let polish = |sweeps, cameras_every, deviation_weight| Polish {
             sweeps,
             flips_every: 1,
             cameras_every,
-            deviation_weight: 0.5,
+            deviation_weight,
         };
         match self {
             Self::Paper => ImageOptions {
@@ -70,9 +70,9 @@ impl Preset {
                 placement: super::super::memoryless::MemorylessOptions::default(),
                 polish: Polish::default(),
             },
-            Self::Fast => recipe(42, 1, 1.35, polish(1, 0)),
-            Self::Default => recipe(42, 4, 1.7, polish(4, 0)),
-            Self::Best => recipe(56, 9, 2.5, polish(10, 4)),
+            Self::Fast => recipe(42, 1, 1.35, polish(1, 0, 0.5)),
+            Self::Default => recipe(42, 4, 1.7, polish(4, 0, 0.5)),
+            Self::Best => recipe(56, 9, 2.5, polish(12, 4, 0.25)),
         }
     }
 }
