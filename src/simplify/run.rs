@@ -2,7 +2,10 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{self, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
+    image::{
+        self, Deviation, EngineName, ImageDriven, ImageOptions, Limits, Pictures, PolishCounters,
+        Start,
+    },
     memoryless::Memoryless,
     quadric::QuadricMethod,
     visibility::{VisibilityMethod, VisibilityOptions},
@@ -228,12 +231,18 @@ impl<'a> Run<'a> {
                 let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
                 Some(Pictures::<E>::new(&scene, live, &set))
             };
+            let points = |t: &[u32; 3]| t.map(|v| original.positions()[v as usize]);
+            let surface = original.triangles().iter().map(points).collect();
+            let deviation = Deviation::new(surface, &self.live, own.polish.deviation_weight);
             let counters;
             (pictures, counters) = image::polish(
                 &mut self.live,
                 pictures,
                 own.polish,
-                self.options.rules,
+                Limits {
+                    rules: self.options.rules,
+                    deviation: deviation.as_ref(),
+                },
                 &mut fresh,
                 &mut self.recorder,
                 self.progress,

@@ -11,7 +11,7 @@ use lodmark::{
     raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
-        image::{ImageDriven, ImageOptions, Start},
+        image::{ImageDriven, ImageOptions, Preset, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -338,7 +338,7 @@ fn options(triangles: u64) -> Options {
     let mut options = Options::image(Amount::Triangles(triangles));
     options.method = MethodOptions::Image(ImageOptions {
         size: 64.into(),
-        ..ImageOptions::default()
+        ..Preset::Paper.options()
     });
     options
 }
@@ -384,7 +384,7 @@ fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
         options.method = MethodOptions::Image(ImageOptions {
             size: 32.into(),
             start: Start::Triangles(start),
-            ..ImageOptions::default()
+            ..Preset::Paper.options()
         });
         simplify::simplify(&mesh, &options, &Silent).expect("simplified")
     };

@@ -8,6 +8,7 @@
 
 mod change;
 mod cost;
+mod deviation;
 mod moves;
 mod options;
 mod pictures;
@@ -16,9 +17,10 @@ mod preset;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
+pub use deviation::Deviation;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use pictures::{PictureScratch, Pictures};
-pub use polish::{Polish, PolishCounters, polish};
+pub use polish::{Limits, Polish, PolishCounters, polish};
 pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};

@@ -96,7 +96,7 @@ fn spirals_cover_the_sphere_evenly_with_any_number_of_views() {
             continue;
         }
         // Every point of the sphere has a direction nearby: no farther than twice the radius of a fair share.
-        let share = 2.0 / f64::from(n).sqrt();
+        let share = 2.0 / sqrt(f64::from(n));
         for probe in directions::octahedron(3) {
             let nearest = set.iter().map(|d| (*d - probe).length());
             let nearest = nearest.fold(f64::INFINITY, f64::min);
