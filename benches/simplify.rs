@@ -7,7 +7,7 @@
 
 use std::{hint::black_box, path::PathBuf};
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use lodmark::{
     Silent, io,
     mesh::{Mesh, canonical, generate, weld},
@@ -43,5 +43,43 @@ fn methods(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, methods);
+/// The rows of the geometric methods at scale: the dragon to 8,191 triangles, and the cost of a collapse by size.
+fn scale(c: &mut Criterion) {
+    let models = std::env::var_os("LODMARK_MODELS")
+        .map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from);
+    let mut group = c.benchmark_group("scale");
+    group.sample_size(10);
+    match io::read(&models.join("dragon.ply")) {
+        Ok(loaded) => {
+            let mesh = canonical(&weld(loaded.mesh).mesh).mesh;
+            let target = Amount::Triangles(8_191);
+            for options in [Options::memoryless(target), Options::quadric(target)] {
+                group.bench_function(
+                    format!("dragon to 8,191 by {}", options.method.name()),
+                    |b| {
+                        b.iter(|| {
+                            black_box(simplify(&mesh, &options, &Silent).expect("simplified"))
+                        });
+                    },
+                );
+            }
+        }
+        Err(e) => println!("the dragon is left out: {e}"),
+    }
+    for side in [190, 420, 920] {
+        let mesh = canonical(&generate::grid(side, side, generate::Height::Waves)).mesh;
+        let triangles = mesh.triangles().len() as u64;
+        group.throughput(Throughput::Elements(triangles / 2));
+        let options = Options::memoryless(Amount::Triangles(triangles / 100));
+        group.bench_function(
+            format!("collapses of {triangles} triangles to a hundredth"),
+            |b| {
+                b.iter(|| black_box(simplify(&mesh, &options, &Silent).expect("simplified")));
+            },
+        );
+    }
+    group.finish();
+}
+
+criterion_group!(benches, methods, scale);
 criterion_main!(benches);

@@ -1,4 +1,4 @@
-//! `lodmark replay`: any level of a recorded run.
+//! `lodmark replay`: any level of a recorded run; the last one as the run polished it.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,9 @@ use crate::{
     mesh::{self, content_sha256},
 };
 
-/// Rebuild any level of a recorded run, bit-equal to a run that stopped there
+/// Rebuild any level of a recorded run: the mesh as the run had it there, bit for bit
+///
+/// Polishing follows the last collapse and belongs to the last level only.
 #[derive(Debug, clap::Args)]
 pub(super) struct Options {
     /// The mesh that was simplified

@@ -5,6 +5,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -60,10 +61,27 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
+impl Counters {
+    /// Adds what another run did, its ranks excepted.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.collapses += other.collapses;
+        self.evaluations += other.evaluations;
+        self.estimates += other.estimates;
+        self.evaluations_if_eager += other.evaluations_if_eager;
+        self.refusals.add_all(&other.refusals);
+    }
+}
+
 /// Watches a run: history, charts, tests.
 pub trait Observer {
     /// A patch was committed; `live` already has it.
     fn committed(&mut self, live: &LiveMesh, patch: &Patch);
+
+    /// The edge between `keep` and `gone` was collapsed to `to` (frame units) while the mesh was in tiles: its patch
+    /// is not known. Only for meshes without attributes.
+    fn thinned(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
+        let _ = (live, keep, gone, to);
+    }
 }
 
 /// Watches nothing.
@@ -130,6 +148,13 @@ impl<M: Method> Engine<M> {
     #[must_use]
     pub fn with_rank_measured(mut self, every: u64) -> Self {
         self.rank_every = every;
+        self
+    }
+
+    /// Goes on counting from what was done before.
+    #[must_use]
+    pub fn with_counters(mut self, counters: Counters) -> Self {
+        self.counters = counters;
         self
     }
 
@@ -264,20 +289,21 @@ impl<M: Method> Engine<M> {
                 continue;
             }
             for e in self.live.edges_at(v) {
-                if queue.stale(&self.live, e) {
+                if self.live.is_frozen(e) || !queue.stale(&self.live, e) {
+                    continue;
+                }
+                self.counters.evaluations_if_eager += 1;
+                let at_once = match self.schedule {
+                    Schedule::Lazy => false,
+                    Schedule::Semi => v == vertex,
+                    Schedule::Eager => v == vertex || self.method.may_fall(&self.live, e),
+                };
+                if at_once {
                     touched.push(e);
                 }
             }
         }
-        self.counters.evaluations_if_eager += touched.len() as u64;
         let live = &self.live;
-        match self.schedule {
-            Schedule::Lazy => touched.clear(),
-            Schedule::Semi => {
-                touched.retain(|&e| live.edge(e).is_some_and(|ends| ends.contains(&vertex)))
-            }
-            Schedule::Eager => {}
-        }
         touched.retain(|&e| match self.method.estimate(live, e) {
             Some(geometric) => {
                 self.counters.estimates += 1;
@@ -392,7 +418,7 @@ impl<M: Method> Engine<M> {
 
     fn live_edges(&self) -> Vec<u32> {
         (0..self.live.edge_ids())
-            .filter(|&e| self.live.edge(e).is_some())
+            .filter(|&e| self.live.edge(e).is_some() && !self.live.is_frozen(e))
             .collect()
     }
 

@@ -1,85 +1,150 @@
 //! Folds: edges whose two faces nearly lie on each other, the backs together or the fronts.
 //!
 //! Many small steps, each within the rule on normals, can add up to a fold; so the angle between neighbours itself is
-//! tested. A patch may not make an edge sharper than [`FOLD_COSINE`], unless there was one at least as sharp among the
-//! edges that it changes: what is folded in the input may stay folded.
+//! tested. A change may not make an edge sharper than the rules allow, unless there was one at least as sharp among
+//! the edges that it changes: what is folded in the input may stay folded.
 
 use glam::DVec3;
 
-use super::{LiveMesh, Patch, PatchFace, Refusal, ring::normal};
+use super::{LiveMesh, Patch, PatchFace, Refusal, Ring, Rules, ring::normal};
 use crate::num::math::sqrt;
-
-/// Smallest cosine between the normals of two neighbouring faces that a change may lead to.
-pub const FOLD_COSINE: f64 = -0.8;
 
 /// Tests the edges that a patch, not yet committed, makes or changes.
 ///
-/// O(faces * valence).
+/// O(faces * (faces + valence)).
 ///
 /// # Errors
 /// [`Refusal::Fold`].
-pub fn unfolded(live: &LiveMesh, patch: &Patch) -> Result<(), Refusal> {
-    let after = sharpest(live, patch, true);
-    if after >= FOLD_COSINE || after >= sharpest(live, patch, false) {
+pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refusal> {
+    let changed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
+    let facets = |faces: &[PatchFace], after: bool| {
+        let facet = |f: &PatchFace| Facet {
+            corners: f.corners,
+            normal: normal(if after {
+                patch.after(live, f)
+            } else {
+                patch.before(live, f)
+            }),
+        };
+        faces.iter().map(facet).collect::<Vec<_>>()
+    };
+    let after = sharpest(live, &facets(&patch.added, true), changed);
+    if after >= rules.fold_cosine
+        || after >= sharpest(live, &facets(&patch.removed, false), changed)
+    {
         Ok(())
     } else {
         Err(Refusal::Fold)
     }
 }
 
-/// The smallest cosine between the normals of two neighbours at an edge of the patch, after it or before it; 1 where
-/// there is none. Faces without area and edges with more than two faces have no angle.
-fn sharpest(live: &LiveMesh, patch: &Patch, after: bool) -> f64 {
-    let faces = if after { &patch.added } else { &patch.removed };
-    let points = |f: &PatchFace| {
-        if after {
-            patch.after(live, f)
-        } else {
-            patch.before(live, f)
-        }
+/// [`unfolded`] of the collapse of a ring's edge to `position`.
+///
+/// # Errors
+/// [`Refusal::Fold`].
+pub fn ring_unfolded(
+    live: &LiveMesh,
+    ring: &Ring,
+    position: DVec3,
+    rules: Rules,
+) -> Result<(), Refusal> {
+    let changed = |id: u32| ring.faces.binary_search_by_key(&id, |f| f.id).is_ok();
+    let [u, w] = ring.ends;
+    // Nearly every ring has room on the stack.
+    let mut few = [Facet::default(); 24];
+    let mut many;
+    let facets = if ring.faces.len() <= few.len() {
+        few.as_mut_slice()
+    } else {
+        many = vec![Facet::default(); ring.faces.len()];
+        many.as_mut_slice()
     };
+    let mut count = 0;
+    for face in ring.faces.iter().filter(|f| f.survives) {
+        facets[count] = Facet {
+            corners: face.corners.map(|v| if v == w { u } else { v }),
+            normal: normal(face.points_after(position)),
+        };
+        count += 1;
+    }
+    let after = sharpest(live, &facets[..count], changed);
+    if after >= rules.fold_cosine {
+        return Ok(());
+    }
+    for (facet, face) in facets.iter_mut().zip(&ring.faces) {
+        *facet = Facet {
+            corners: face.corners,
+            normal: face.normal,
+        };
+    }
+    if after >= sharpest(live, &facets[..ring.faces.len()], changed) {
+        Ok(())
+    } else {
+        Err(Refusal::Fold)
+    }
+}
+
+/// A face, before or after.
+#[derive(Clone, Copy, Debug, Default)]
+struct Facet {
+    corners: [u32; 3],
+    /// Twice its area along its normal.
+    normal: DVec3,
+}
+
+/// The smallest cosine between the normals of two neighbours of which one is in `facets`; 1 where there are none. The
+/// others are the faces of `live` that are not `changed`. Faces without area and edges with more than two faces have
+/// no angle.
+fn sharpest(live: &LiveMesh, facets: &[Facet], changed: impl Fn(u32) -> bool) -> f64 {
     let mut least = 1.0_f64;
-    for (i, face) in faces.iter().enumerate() {
-        let own = normal(points(face));
+    for (i, facet) in facets.iter().enumerate() {
         for k in 0..3 {
-            let side = [face.corners[k], face.corners[(k + 1) % 3]];
-            let mut neighbor: Option<(f64, DVec3)> = None;
-            let mut count = 0;
-            let mut meet = |index: Option<usize>, other: [u32; 3], normal: &dyn Fn() -> DVec3| {
-                let Some(at) = other.iter().position(|&v| v == side[0]) else {
-                    return;
-                };
-                let forward = other[(at + 1) % 3] == side[1];
-                if !forward && other[(at + 2) % 3] != side[1] {
-                    return;
+            let side = [facet.corners[k], facet.corners[(k + 1) % 3]];
+            let within = facets.iter().enumerate().filter(|&(j, _)| j != i);
+            let mut beside = within.filter_map(|(j, f)| Some((j, along(f.corners, side)?, f)));
+            if let Some((j, forward, other)) = beside.next() {
+                // Every pair once.
+                if j > i && beside.next().is_none() {
+                    least = least.min(cosine(facet.normal, other.normal, forward));
                 }
-                count += 1;
-                // Every pair within the patch once.
-                if index.is_none_or(|j| j > i) {
-                    neighbor = Some((if forward { -1.0 } else { 1.0 }, normal()));
-                }
-            };
-            for (j, other) in faces.iter().enumerate().filter(|&(j, _)| j != i) {
-                meet(Some(j), other.corners, &|| normal(points(other)));
+                continue;
             }
-            for id in live.triangles_at(side[0]) {
-                let within = patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
-                if within {
-                    continue;
-                }
-                if let (Some(corners), Some(points)) = (live.triangle(id), live.points(id)) {
-                    meet(None, corners, &|| normal(points));
-                }
-            }
-            if let (1, Some((sign, other))) = (count, neighbor) {
-                let size2 = own.dot(own) * other.dot(other);
-                if size2 > 0.0 {
-                    least = least.min(sign * own.dot(other) / sqrt(size2));
-                }
+            let mut outside = live.triangles_at(side[0]).filter_map(|id| {
+                let corners = live.triangle(id)?;
+                let forward = along(corners, side)?;
+                (!changed(id)).then_some((corners, forward))
+            });
+            if let (Some((corners, forward)), None) = (outside.next(), outside.next()) {
+                let other = normal(corners.map(|v| live.position(v)));
+                least = least.min(cosine(facet.normal, other, forward));
             }
         }
     }
     least
+}
+
+/// Whether a face runs along a side in its direction; `None` where the side is not its own.
+#[inline]
+fn along(corners: [u32; 3], [a, b]: [u32; 2]) -> Option<bool> {
+    let at = corners.iter().position(|&v| v == a)?;
+    if corners[(at + 1) % 3] == b {
+        Some(true)
+    } else {
+        (corners[(at + 2) % 3] == b).then_some(false)
+    }
+}
+
+/// The cosine between two normals, the second turned over where its face runs along the common edge as the first does.
+#[inline]
+fn cosine(a: DVec3, b: DVec3, forward: bool) -> f64 {
+    let dot = if forward { -a.dot(b) } else { a.dot(b) };
+    let size2 = a.dot(a) * b.dot(b);
+    if dot < 0.0 && size2 > 0.0 {
+        dot / sqrt(size2)
+    } else {
+        // Only sharp edges matter.
+        1.0
+    }
 }
 
 #[cfg(test)]
@@ -97,7 +162,7 @@ mod tests {
     fn moved(live: &LiveMesh, to: DVec3) -> Result<(), Refusal> {
         let mut patch = Patch::default();
         patch.set_move(live, 3, to);
-        unfolded(live, &patch)
+        unfolded(live, &patch, Rules::default())
     }
 
     #[test]
@@ -106,16 +171,52 @@ mod tests {
         assert_eq!(moved(&flat, DVec3::new(0.5, 0.2, 1.0)), Ok(()));
         let shut = DVec3::new(0.5, 1.0, 0.3);
         assert_eq!(moved(&flat, shut), Err(Refusal::Fold));
-        assert_eq!(
-            moved(&flat, shut * DVec3::new(1.0, 1.0, -1.0)),
-            Err(Refusal::Fold)
-        );
+        let below = shut * DVec3::new(1.0, 1.0, -1.0);
+        assert_eq!(moved(&flat, below), Err(Refusal::Fold));
         let folded = hinge(shut);
         assert_eq!(moved(&folded, DVec3::new(0.5, 1.0, 0.4)), Ok(()));
-        assert_eq!(
-            moved(&folded, DVec3::new(0.5, 1.0, 0.2)),
-            Err(Refusal::Fold),
-            "sharper still"
-        );
+        let sharper = DVec3::new(0.5, 1.0, 0.2);
+        assert_eq!(moved(&folded, sharper), Err(Refusal::Fold));
+    }
+
+    #[test]
+    fn a_collapse_that_would_fold_is_refused_as_its_patch_is() {
+        // A ridge of two slopes; the ring of its top edge, whose collapse is tried all around.
+        let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        let positions = vec![
+            p(0.0, 0.0, 0.0),
+            p(1.0, 0.0, 0.0),
+            p(-0.5, -1.0, 0.0),
+            p(0.5, -1.0, 0.0),
+            p(1.5, -1.0, 0.0),
+            p(1.5, 1.0, 0.0),
+            p(0.5, 1.0, 0.0),
+            p(-0.5, 1.0, 0.0),
+        ];
+        let triangles = vec![
+            [0, 3, 1],
+            [0, 2, 3],
+            [1, 3, 4],
+            [1, 4, 5],
+            [1, 5, 6],
+            [0, 1, 6],
+            [0, 6, 7],
+            [0, 7, 2],
+        ];
+        let mesh = Mesh::from_triangles(positions, triangles).expect("valid");
+        let live = LiveMesh::new(&mesh, Frame::default());
+        let mut ring = Ring::default();
+        assert!(ring.gather(&live, live.find_edge(0, 1).expect("an edge")));
+        let (mut folds, mut patch) = (0, Patch::default());
+        for i in 0..20 {
+            for z in [0.0, 0.4, 2.0] {
+                let to = p(f64::from(i) * 0.25 - 2.0, 0.3, z);
+                ring.patch(&live, to, &mut patch);
+                let outcome = ring_unfolded(&live, &ring, to, Rules::default());
+                assert_eq!(outcome, unfolded(&live, &patch, Rules::default()), "{to}");
+                folds += usize::from(outcome.is_err());
+            }
+        }
+        assert!(folds > 3 && folds < 50, "{folds}");
     }
 }

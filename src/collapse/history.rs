@@ -180,4 +180,13 @@ impl Observer for Recorder {
             rows_end: history.rows.len(),
         });
     }
+
+    fn thinned(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
+        let to = live.frame().leave(to);
+        self.history.records.push(Stored {
+            record: Record::Collapse { keep, gone, to },
+            corners_end: self.history.corners.len(),
+            rows_end: self.history.rows.len(),
+        });
+    }
 }

@@ -32,6 +32,15 @@ pub struct Rules {
     pub topology: Topology,
     /// Smallest cosine between the normals of a face before and after one collapse, in [0, 1).
     pub normal_cosine: f64,
+    /// Smallest cosine between the normals of two neighbouring faces that a change may lead to, in [-1, 1); -1 allows
+    /// any fold. Where an edge is sharper already, it may stay so.
+    #[serde(default = "no_fold")]
+    pub fold_cosine: f64,
+}
+
+/// Sharper than 143 degrees is a fold, not a feature.
+const fn no_fold() -> f64 {
+    -0.8
 }
 
 impl Default for Rules {
@@ -39,6 +48,7 @@ impl Default for Rules {
         Self {
             topology: Topology::Preserve,
             normal_cosine: 0.2,
+            fold_cosine: no_fold(),
         }
     }
 }
@@ -110,6 +120,13 @@ impl Refusals {
     /// Counts one.
     pub fn add(&mut self, refusal: Refusal) {
         self.0[refusal as usize] += 1;
+    }
+
+    /// Adds the counts of another run.
+    pub(super) fn add_all(&mut self, other: &Self) {
+        for (own, more) in self.0.iter_mut().zip(other.0) {
+            *own += more;
+        }
     }
 
     /// How often a rule refused.

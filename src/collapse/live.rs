@@ -51,6 +51,8 @@ pub struct LiveMesh {
     free_edges: Vec<u32>,
     edges_at: Lists<Incident>,
     locked: Vec<bool>,
+    /// Vertices whose faces are not all here, where there are any; see [`super::tiles`].
+    frozen: Vec<bool>,
     pub(super) rows: WedgeRows,
     pub(super) wedges: Vec<[u32; 3]>,
     pub(super) materials: Materials,
@@ -63,42 +65,72 @@ impl LiveMesh {
     /// Triangles that repeat a vertex have no area and no edges to collapse: they are dead from the start. O(n).
     #[must_use]
     pub fn new(mesh: &Mesh, frame: Frame) -> Self {
-        let (vertices, triangles) = (mesh.positions().len(), mesh.triangles().len());
-        let mut valences = vec![0; vertices];
-        for &v in mesh.triangles().iter().flatten() {
-            valences[v as usize] += 1;
-        }
         let mut live = Self {
             frame,
             precision: mesh.precision(),
             positions: mesh.positions().iter().map(|&p| frame.enter(p)).collect(),
-            faces: vec![[NONE; 3]; triangles],
-            live: 0,
-            faces_at: Lists::with_room(&valences),
-            edges: Vec::with_capacity(triangles / 2 * 3 + 64),
-            free_edges: Vec::new(),
-            edges_at: Lists::with_room(&valences),
-            locked: vec![false; vertices],
+            locked: vec![false; mesh.positions().len()],
             rows: WedgeRows::of(mesh.attributes()),
             wedges: mesh.attributes().corners().to_vec(),
             materials: mesh.materials().clone(),
-            may_have_features: false,
+            ..Self::default()
         };
         let materials = &mesh.materials().of_triangle;
         live.may_have_features =
             live.rows.has_feature_channels() || materials.windows(2).any(|m| m[0] != m[1]);
+        live.link(mesh.triangles().to_vec());
+        live
+    }
+
+    /// A part of `whole`, without attributes, materials and locks: some of its vertices and faces under new ids. Edges
+    /// at `frozen` vertices are never collapsed.
+    pub(super) fn part(
+        whole: &Self,
+        positions: Vec<DVec3>,
+        faces: Vec<[u32; 3]>,
+        frozen: Vec<bool>,
+    ) -> Self {
+        let mut live = Self {
+            frame: whole.frame,
+            precision: whole.precision,
+            locked: vec![false; positions.len()],
+            positions,
+            frozen,
+            ..Self::default()
+        };
+        live.link(faces);
+        live
+    }
+
+    /// Takes over faces and positions from parts, and finds all adjacency anew; faces of [`NONE`] are dead. O(n).
+    pub(super) fn link(&mut self, faces: Vec<[u32; 3]>) {
+        let mut valences = vec![0; self.positions.len()];
+        let mut count = 0;
+        for &[a, b, c] in &faces {
+            if a != b && b != c && c != a {
+                count += 1;
+                for v in [a, b, c] {
+                    valences[v as usize] += 1;
+                }
+            }
+        }
+        self.faces = vec![[NONE; 3]; faces.len()];
+        self.live = 0;
+        self.faces_at = Lists::with_room(&valences);
+        self.edges_at = Lists::with_room(&valences);
+        self.edges = Vec::with_capacity(count / 2 * 3 + 64);
+        self.free_edges.clear();
         let mut created = Vec::new();
-        for (t, &corners) in mesh.triangles().iter().enumerate() {
+        for (t, corners) in faces.into_iter().enumerate() {
             let [a, b, c] = corners;
             if a != b && b != c && c != a {
-                live.link_face(t as u32, corners);
+                self.link_face(t as u32, corners);
                 for k in 0..3 {
-                    live.add_side(corners[k], corners[(k + 1) % 3], &mut created);
+                    self.add_side(corners[k], corners[(k + 1) % 3], &mut created);
                 }
                 created.clear();
             }
         }
-        live
     }
 
     /// From frame units to file units.
@@ -223,6 +255,18 @@ impl LiveMesh {
     #[must_use]
     pub fn is_locked(&self, vertex: u32) -> bool {
         self.locked[vertex as usize]
+    }
+
+    /// True where an edge must not be collapsed because some of the faces around it are elsewhere.
+    #[inline]
+    pub(super) fn is_frozen(&self, edge: u32) -> bool {
+        let ends = self.edges[edge as usize].ends;
+        !self.frozen.is_empty() && ends.iter().any(|&v| self.frozen[v as usize])
+    }
+
+    /// True where nothing but positions and triangles matters: no attributes, no borders of materials, no locks.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.may_have_features && self.wedges.is_empty() && !self.locked.contains(&true)
     }
 
     /// Locks or unlocks a vertex. A locked vertex keeps its position and survives every collapse as a place.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality};
+use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality, ring_unfolded};
 
 /// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,7 @@ impl<'a> Site<'a> {
             return Err(Refusal::Locked);
         }
         legality::shape(self.ring, position, self.rules)?;
+        ring_unfolded(self.live, self.ring, position, self.rules)?;
         Ok(Admitted(position))
     }
 
@@ -112,6 +113,13 @@ pub trait Method: Sync {
     fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
         let _ = (live, edge);
         None
+    }
+
+    /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
+    /// rose is noticed in time at the front of the queue.
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        let _ = (live, edge);
+        true
     }
 
     /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before

@@ -21,11 +21,12 @@ mod queue;
 mod replay;
 mod ring;
 mod star;
+mod tiles;
 pub mod wedge;
 
 pub use engine::{Counters, End, Engine, Observer, Target};
 pub use flip::{flip, unmirrored};
-pub use fold::{FOLD_COSINE, unfolded};
+pub use fold::{ring_unfolded, unfolded};
 pub use heap::{Heap, Key};
 pub use history::{Entry, Header, History, Record, Recorder};
 pub use legality::{Refusal, Refusals, Rules, Topology};
@@ -36,3 +37,4 @@ pub use queue::Schedule;
 pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};
 pub use star::{Freedom, Star};
+pub use tiles::{Divisible, Tiling, thin};

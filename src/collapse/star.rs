@@ -143,12 +143,14 @@ impl Star {
         let faces = &mut self.faces;
         let (mut reached, mut next) = (1, 0);
         while next < reached {
-            for i in reached..faces.len() {
+            let mut i = reached;
+            while i < faces.len() {
                 let shares = |v: &u32| *v != self.vertex && faces[next].corners.contains(v);
                 if faces[i].corners.iter().any(shares) {
                     faces.swap(reached, i);
                     reached += 1;
                 }
+                i += 1;
             }
             next += 1;
         }

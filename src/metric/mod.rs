@@ -15,3 +15,5 @@ pub mod surface;
 mod triangle;
 
 pub use triangle::closest_point;
+
+pub use proximity::Proximity;

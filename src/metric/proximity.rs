@@ -37,16 +37,21 @@ impl Node {
     }
 }
 
-/// Triangles in a tree of boxes.
+/// Triangles in a tree of boxes: distances from any point to them.
 #[derive(Clone, Debug)]
-pub(super) struct Proximity {
+pub struct Proximity {
     nodes: Vec<Node>,
     triangles: Vec<Triangle>,
 }
 
 impl Proximity {
     /// Builds the tree by halving at the median of the longest side; O(n log n). `None` without triangles.
-    pub(super) fn new(mut triangles: Vec<Triangle>) -> Option<Self> {
+    #[must_use]
+    pub fn new(corners: Vec<[DVec3; 3]>) -> Option<Self> {
+        Self::of(corners.into_iter().map(Triangle::new).collect())
+    }
+
+    pub(super) fn of(mut triangles: Vec<Triangle>) -> Option<Self> {
         if triangles.is_empty() {
             return None;
         }
@@ -63,7 +68,8 @@ impl Proximity {
 
     /// Squared distance from `p` to the triangles and the index of a triangle of the tree that has it. `near` is a
     /// guess of that triangle: a good one saves time and changes no distance.
-    pub(super) fn squared_distance(&self, p: DVec3, near: u32) -> (f64, u32) {
+    #[must_use]
+    pub fn squared_distance(&self, p: DVec3, near: u32) -> (f64, u32) {
         let mut best = (self.triangles[near as usize].closest(p).1, near);
         let mut stack = [(0_u32, 0.0_f64); DEPTH + 1];
         stack[0] = (0, self.nodes[0].squared_distance(p));
@@ -188,7 +194,7 @@ mod tests {
         ) {
             let triangles: Vec<Triangle> = corners.iter().map(|&c| Triangle::new(c)).collect();
             let all = triangles.iter().map(|t| t.closest(p).1).fold(f64::INFINITY, f64::min);
-            let tree = Proximity::new(triangles).expect("not empty");
+            let tree = Proximity::of(triangles).expect("not empty");
             let (found, _) = tree.squared_distance(p, (guess % corners.len()) as u32);
             prop_assert_eq!(found.to_bits(), all.to_bits());
         }

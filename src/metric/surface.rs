@@ -255,7 +255,7 @@ impl Surface {
             .iter()
             .map(|t| Triangle::new(t.map(|v| positions[v as usize])))
             .collect();
-        let tree = Proximity::new(triangles.clone()).ok_or_else(|| empty(which))?;
+        let tree = Proximity::of(triangles.clone()).ok_or_else(|| empty(which))?;
         Ok(Self {
             triangles,
             vertices,

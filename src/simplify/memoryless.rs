@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 
 use super::fan::Fans;
 use crate::{
-    collapse::{Admitted, BoundaryEdge, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site},
+    collapse::{
+        Admitted, BoundaryEdge, Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site,
+    },
     num::math,
 };
 
@@ -103,15 +105,15 @@ impl Gradient {
     }
 }
 
-/// Up to three accepted rows `a . v = b`, each of unit length.
+/// Up to three accepted rows `a . v = b`; of unit length where `UNIT`, which only guards against overflow.
 #[derive(Clone, Copy, Debug, Default)]
-struct Constraints {
+struct Constraints<const UNIT: bool> {
     rows: [DVec3; 3],
     values: [f64; 3],
     count: usize,
 }
 
-impl Constraints {
+impl<const UNIT: bool> Constraints<UNIT> {
     /// Accepts the row where it is compatible with those before it.
     fn offer(&mut self, a: DVec3, b: f64) {
         let a2 = a.dot(a);
@@ -132,9 +134,12 @@ impl Constraints {
             _ => false,
         };
         if compatible {
-            let l = math::sqrt(a2);
-            self.rows[self.count] = a / l;
-            self.values[self.count] = b / l;
+            (self.rows[self.count], self.values[self.count]) = if UNIT {
+                let l = math::sqrt(a2);
+                (a / l, b / l)
+            } else {
+                (a, b)
+            };
             self.count += 1;
         }
     }
@@ -265,10 +270,19 @@ impl Objective {
     /// The position that the constraints determine.
     #[must_use]
     pub fn place(&self) -> Placement {
-        let mut constraints = Constraints::default();
+        self.solve::<true>()
+    }
+
+    /// As [`Objective::place`], where sums are far from the limits of doubles; faster.
+    pub(super) fn place_quickly(&self) -> Placement {
+        self.solve::<false>()
+    }
+
+    fn solve<const UNIT: bool>(&self) -> Placement {
+        let mut constraints = Constraints::<UNIT>::default();
         let mut accepted = [0; 4];
-        let keep_volume = |c: &mut Constraints| c.offer(self.normal_sum, self.volume_sum);
-        let keep_boundary = |c: &mut Constraints| {
+        let keep_volume = |c: &mut Constraints<UNIT>| c.offer(self.normal_sum, self.volume_sum);
+        let keep_boundary = |c: &mut Constraints<UNIT>| {
             if let Some(boundary) = &self.boundary {
                 let (e, m) = (boundary.edge_sum, boundary.moment_sum);
                 let mut gradient = Gradient::default();
@@ -437,5 +451,21 @@ impl Method for Memoryless {
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.fans.follow(live, patch);
+    }
+
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        self.fans.may_fall(live, edge)
+    }
+}
+
+impl Divisible for Memoryless {
+    fn part(&self, part: &LiveMesh, _: &[u32]) -> Self {
+        Self::new(part, self.options)
+    }
+
+    fn unite(&mut self, _: Self, _: &[u32]) {}
+
+    fn relinked(&mut self, live: &LiveMesh) {
+        self.fans = Fans::of(live);
     }
 }

@@ -148,6 +148,7 @@ impl Options {
         };
         self.target.triangles(1)?;
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
+        within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
         match (self.error_rms, &self.method) {
             (None, _) if self.target == Amount::ErrorOnly => {
                 return Err(Error::Usage(

@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
     num::math,
 };
 
@@ -312,4 +312,20 @@ impl Method for QuadricMethod {
             self.quadrics[moved.vertex as usize] = sum;
         }
     }
+}
+
+impl Divisible for QuadricMethod {
+    fn part(&self, _: &LiveMesh, vertices: &[u32]) -> Self {
+        Self {
+            quadrics: vertices.iter().map(|&v| *self.quadric(v)).collect(),
+        }
+    }
+
+    fn unite(&mut self, part: Self, vertices: &[u32]) {
+        for (&v, quadric) in vertices.iter().zip(part.quadrics) {
+            self.quadrics[v as usize] = quadric;
+        }
+    }
+
+    fn relinked(&mut self, _: &LiveMesh) {}
 }

@@ -2,13 +2,18 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    image::{self, EngineName, ImageDriven, ImageOptions, Pictures, PolishCounters, Start},
+    image::{
+        self, Deviation, EngineName, ImageDriven, ImageOptions, Limits, Pictures, PolishCounters,
+        Start,
+    },
     memoryless::Memoryless,
     quadric::QuadricMethod,
 };
 use crate::{
     Error, Progress, Result,
-    collapse::{End, Engine, LiveMesh, Method, Recorder, Target},
+    collapse::{
+        Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
+    },
     mesh::Mesh,
     raster::{BucketEngine, LayerEngine, Scene, Unrender},
     view::{ViewsName, frame_of},
@@ -39,11 +44,11 @@ fn in_pool(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Ou
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
             let method = Memoryless::new(&run.live, *own);
-            run.phase("memoryless", method, target)?.0
+            run.thinned("memoryless", method, target)?.0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
-            run.phase("quadric", method, target)?.0
+            run.thinned("quadric", method, target)?.0
         }
         MethodOptions::Image(own) => match own.engine {
             EngineName::Layers => run.image::<LayerEngine>(own, target)?,
@@ -84,16 +89,39 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Collapses under one method until the target or its end.
+    /// Collapses tile by tile while the mesh is large, then as a whole.
+    fn thinned<M: Divisible>(
+        &mut self,
+        name: &'static str,
+        mut method: M,
+        target: Target,
+    ) -> Result<(End, M)> {
+        let triangles_in = self.live.triangle_count();
+        let mut counters = Counters::default();
+        thin(
+            &mut self.live,
+            &mut method,
+            (self.options.rules, self.options.schedule),
+            Tiling::default(),
+            target,
+            &mut counters,
+            &mut self.recorder,
+            self.progress,
+        )?;
+        self.phase(name, method, target, (triangles_in, counters))
+    }
+
+    /// Collapses under one method until the target or its end; counts on from `before`.
     fn phase<M: Method>(
         &mut self,
         name: &'static str,
         method: M,
         target: Target,
+        (triangles_in, counters): (usize, Counters),
     ) -> Result<(End, M)> {
-        let triangles_in = self.live.triangle_count();
         let live = std::mem::take(&mut self.live);
         let mut engine = Engine::new(live, method, self.options.rules, self.options.schedule)
+            .with_counters(counters)
             .with_rank_measured(self.options.measure_rank);
         let end = engine.run(target, &mut self.recorder, self.progress);
         let (live, method, counters) = engine.into_parts();
@@ -123,7 +151,7 @@ impl<'a> Run<'a> {
                 let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
-                self.phase("memoryless", method, Target { triangles })?;
+                self.thinned("memoryless", method, Target { triangles })?;
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
@@ -145,7 +173,8 @@ impl<'a> Run<'a> {
             start,
             ..own.clone()
         });
-        let (end, method) = self.phase("image", method, target)?;
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("image", method, target, before)?;
         let mut pictures = method.into_pictures();
         if own.polish.sweeps > 0 {
             // The limit is one for the views that the user was told.
@@ -155,12 +184,18 @@ impl<'a> Run<'a> {
                 let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
                 Some(Pictures::<E>::new(&scene, live, &set))
             };
+            let points = |t: &[u32; 3]| t.map(|v| original.positions()[v as usize]);
+            let surface = original.triangles().iter().map(points).collect();
+            let deviation = Deviation::new(surface, &self.live, own.polish.deviation_weight);
             let counters;
             (pictures, counters) = image::polish(
                 &mut self.live,
                 pictures,
                 own.polish,
-                self.options.rules,
+                Limits {
+                    rules: self.options.rules,
+                    deviation: deviation.as_ref(),
+                },
                 &mut fresh,
                 &mut self.recorder,
                 self.progress,

@@ -467,6 +467,8 @@ fn an_interrupted_run_ends_with_130_and_leaves_what_was_there() {
         "out.ply",
         "-t",
         "10",
+        "--start-triangles",
+        "none",
         "--json",
         "report.json",
         "--history",

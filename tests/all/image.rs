@@ -11,7 +11,7 @@ use lodmark::{
     raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
-        image::{ImageDriven, ImageOptions, Start},
+        image::{ImageDriven, ImageOptions, Preset, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -59,7 +59,7 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
 }
 
 /// Sum of squared luma differences, by drawing everything.
-fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
+pub(crate) fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
     let (a, b) = (Scene::of(original), Scene::of(current));
     let view = |view: &View| -> i64 {
         let (x, y) = (
@@ -76,7 +76,7 @@ fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
 }
 
 /// Meshes with everything that makes surgery hard.
-fn meshes() -> Vec<(&'static str, Mesh)> {
+pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
     let mesh = |positions: &[[f64; 3]], triangles: Vec<[u32; 3]>| {
         let positions = positions.iter().map(|&p| DVec3::from_array(p)).collect();
         Mesh::from_triangles(positions, triangles).expect("valid")
@@ -127,7 +127,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
+pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
     let around = |projection| {
         let directions: Vec<DVec3> = dodecahedron().into_iter().step_by(5).collect();
         ViewSet::around(sphere, &directions, 40, 32, projection).expect("views")
@@ -338,7 +338,7 @@ fn options(triangles: u64) -> Options {
     let mut options = Options::image(Amount::Triangles(triangles));
     options.method = MethodOptions::Image(ImageOptions {
         size: 64.into(),
-        ..ImageOptions::default()
+        ..Preset::Paper.options()
     });
     options
 }
@@ -384,7 +384,7 @@ fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
         options.method = MethodOptions::Image(ImageOptions {
             size: 32.into(),
             start: Start::Triangles(start),
-            ..ImageOptions::default()
+            ..Preset::Paper.options()
         });
         simplify::simplify(&mesh, &options, &Silent).expect("simplified")
     };

@@ -18,11 +18,13 @@ mod mesh;
 mod metric;
 mod metric_surface;
 mod output;
+mod polish;
 mod quadric;
 mod raster;
 mod seams;
 mod shapes;
 mod streams;
+mod tiles;
 mod unrender;
 mod view;
 

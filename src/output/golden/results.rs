@@ -16,7 +16,7 @@ use crate::{
     raster::{Plane, Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Outcome, Replay,
-        image::{DrivingShading, ImageOptions, Start},
+        image::{DrivingShading, ImageOptions, Polish, Preset, Start},
         quadric::QuadricOptions,
         simplify,
     },
@@ -65,7 +65,9 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     let small = ImageOptions {
         views: ViewsName::Octahedron(0),
         size: 64.into(),
+        samples: 1,
         start: Start::Input,
+        polish: Polish::default(),
         ..ImageOptions::default()
     };
     let gouraud = ImageOptions {
@@ -84,7 +86,23 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     let published = ImageOptions {
         size: 64.into(),
         start: Start::Triangles(180),
-        ..ImageOptions::default()
+        ..Preset::Paper.options()
+    };
+    // What the default preset does, in small: turned cameras too.
+    let recipe = ImageOptions {
+        views: ViewsName::Spiral(9),
+        size: 40.into(),
+        polish: Polish {
+            sweeps: 4,
+            flips_every: 1,
+            cameras_every: 2,
+            deviation_weight: 0.3,
+        },
+        ..Preset::Default.options()
+    };
+    let mixed = ImageOptions {
+        shading: DrivingShading::Mixed,
+        ..recipe.clone()
     };
     let torus = || generate::torus(1.0, 0.4, 16, 8);
     for (name, mesh, triangles, own) in [
@@ -112,6 +130,14 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
             120,
             &published,
         ),
+        ("torus/image-polished", torus(), 90, &recipe),
+        (
+            "textured-torus/image-polished",
+            generate::textured_torus(16, 8),
+            120,
+            &recipe,
+        ),
+        ("terrain/image-polished-mixed", terrain(), 120, &mixed),
     ] {
         let outcome = simplify(&mesh, &image(own, Amount::Triangles(triangles)), &Silent)?;
         outcome_items(collector, name, &outcome);

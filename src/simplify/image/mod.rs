@@ -8,6 +8,7 @@
 
 mod change;
 mod cost;
+mod deviation;
 mod moves;
 mod options;
 mod pictures;
@@ -16,14 +17,15 @@ mod preset;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
+pub use deviation::Deviation;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use pictures::{PictureScratch, Pictures};
-pub use polish::{Polish, PolishCounters, polish};
+pub use polish::{Limits, Polish, PolishCounters, polish};
 pub use preset::Preset;
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site, unfolded},
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     raster::{Scene, Unrender},
     view::ViewSet,
 };
@@ -99,7 +101,6 @@ impl<E: Unrender> Method for ImageDriven<E> {
         let proposal = memoryless::propose(site, &self.placement)?;
         let ImageScratch { pictures, patch } = scratch;
         site.patch(proposal.position, patch);
-        unfolded(site.live, patch)?;
         let image = self.pictures.cost(site.live, patch, pictures);
         Ok(Proposal { image, ..proposal })
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PictureScratch, Pictures};
+use super::{Limits, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
     num::math,
@@ -47,7 +47,7 @@ impl<S> Search<S> {
         }
         star.patch(live, to, patch);
         unmirrored(live, patch).ok()?;
-        unfolded(live, patch).ok()?;
+        unfolded(live, patch, rules).ok()?;
         Some(to)
     }
 
@@ -60,10 +60,11 @@ impl<S> Search<S> {
         &mut self,
         live: &LiveMesh,
         pictures: &Pictures<E>,
-        rules: Rules,
+        limits: Limits<'_>,
         vertex: u32,
         [step, turn]: [f64; 2],
     ) -> Found {
+        let Limits { rules, deviation } = limits;
         let mut found = Found::default();
         self.star.gather(live, vertex);
         let axes = match self.star.freedom {
@@ -88,6 +89,17 @@ impl<S> Search<S> {
             }
         }
         self.try_position(live, pictures, rules, lowest, &mut found);
+        if let (Some((to, cost)), Some(deviation)) = (found.better, deviation)
+            && self.prepare(live, to, rules).is_some()
+            && !deviation.pays(
+                live,
+                &self.patch,
+                -cost as f64,
+                pictures.error().sum() as f64,
+            )
+        {
+            found.better = None;
+        }
         found
     }
 

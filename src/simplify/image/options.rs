@@ -19,7 +19,7 @@ use crate::{
 const PIXEL_LIMIT: u64 = 1 << 27;
 
 /// Where the image-driven part of a run begins; the memoryless method gets there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Ten times the target as in Table 1 of the paper for the bunny, but above 32,768 triangles no more than four
@@ -27,7 +27,7 @@ pub enum Start {
     #[default]
     Auto,
     /// So many times the target; as `Auto` where only an error limits the run (or the target is 1).
-    Times(u32),
+    Times(f64),
     /// At this number of triangles.
     Triangles(u64),
     /// At the input itself.
@@ -40,7 +40,7 @@ impl Start {
     pub fn triangles(self, target: usize) -> usize {
         match self {
             Self::Auto | Self::Times(_) if target <= 1 => 65_536,
-            Self::Times(n) => target.saturating_mul(n as usize),
+            Self::Times(n) => (n * target as f64) as usize,
             Self::Auto => target
                 .saturating_mul(10)
                 .min(target.saturating_mul(4).max(32_768)),
@@ -56,17 +56,17 @@ impl Start {
 pub enum Size {
     /// So many pixels, 1 to 4096.
     Pixels(u32),
-    /// So many pixels for every triangle of the target, on average over the whole square; a multiple of 8 from
-    /// [`Size::LEAST`] to [`Size::MOST`] along each side.
+    /// So many pixels for every triangle of the target, besides those of a square of [`Size::LEAST`]; a multiple of 8
+    /// and at most [`Size::MOST`] along each side.
     PerTriangle {
-        /// Pixels of the square for a triangle.
+        /// Pixels for a triangle.
         per_triangle: u32,
     },
 }
 
 impl Size {
     /// Smallest side that follows from the target.
-    pub const LEAST: u32 = 96;
+    pub const LEAST: u32 = 64;
 
     /// Largest side that follows from the target, and what stands for no target.
     pub const MOST: u32 = 256;
@@ -78,9 +78,10 @@ impl Size {
             Self::Pixels(n) => n,
             Self::PerTriangle { .. } if target <= 1 => Self::MOST,
             Self::PerTriangle { per_triangle } => {
-                let area = u64::from(per_triangle).saturating_mul(target as u64);
+                let own = u64::from(per_triangle).saturating_mul(target as u64);
+                let area = own.saturating_add(u64::from(Self::LEAST).pow(2));
                 let side = area.min(u64::from(Self::MOST).pow(2)).isqrt() as u32;
-                (side / 8 * 8).clamp(Self::LEAST, Self::MOST)
+                side / 8 * 8
             }
         }
     }

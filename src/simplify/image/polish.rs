@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Pictures,
+    Deviation, Pictures,
     moves::{Found, Search},
 };
 use crate::{
@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// How much polishing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Polish {
     /// Sweeps over all vertices; 0 is no polishing.
@@ -35,6 +35,18 @@ pub struct Polish {
     pub flips_every: u32,
     /// Cameras are turned after every so many sweeps; 0 is never.
     pub cameras_every: u32,
+    /// How much the share of the distance from the original weighs against the share of the image error in a change;
+    /// 0 is nothing. See [`Deviation`].
+    pub deviation_weight: f64,
+}
+
+/// What polishing may not do.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Limits<'a> {
+    /// As for collapses.
+    pub rules: Rules,
+    /// What a change must pay for.
+    pub deviation: Option<&'a Deviation>,
 }
 
 /// What the polishing did. The same for every number of threads.
@@ -85,7 +97,7 @@ pub fn polish<E: Unrender>(
     live: &mut LiveMesh,
     pictures: Pictures<E>,
     options: Polish,
-    rules: Rules,
+    limits: Limits<'_>,
     fresh: &mut dyn FnMut(&LiveMesh, u32) -> Option<Pictures<E>>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
@@ -103,7 +115,7 @@ pub fn polish<E: Unrender>(
         pool: Mutex::new(Vec::new()),
         live,
         pictures,
-        rules,
+        limits,
         progress,
         changes: Changes::default(),
         clock: 1,
@@ -141,7 +153,7 @@ pub fn polish<E: Unrender>(
 struct Polisher<'a, E: Unrender> {
     live: &'a mut LiveMesh,
     pictures: Pictures<E>,
-    rules: Rules,
+    limits: Limits<'a>,
     progress: &'a dyn Progress,
     /// By vertex id.
     stands: Vec<Stand>,
@@ -187,7 +199,7 @@ impl<E: Unrender> Polisher<'_, E> {
                 search.run(
                     polisher.live,
                     &polisher.pictures,
-                    polisher.rules,
+                    polisher.limits,
                     v,
                     [step, turn],
                 )
@@ -243,7 +255,7 @@ impl<E: Unrender> Polisher<'_, E> {
             return false;
         };
         self.own.star.gather(self.live, vertex);
-        if self.own.prepare(self.live, to, self.rules).is_none() {
+        if self.own.prepare(self.live, to, self.limits.rules).is_none() {
             return false;
         }
         let kept = self.keep(stale, observer);
@@ -290,19 +302,20 @@ impl<E: Unrender> Polisher<'_, E> {
             self.progress.step("flip", 0, 0)?;
             self.take_strangers(&mut waiting, &mut batch, Self::around_edge);
             let now = self.clock;
-            let costs = self.in_parallel(&batch, |polisher, search, &e| {
+            let outcomes = self.in_parallel(&batch, |polisher, search, &e| {
                 let patch = polisher.flip(e, &mut search.patch)?;
-                Some(
-                    polisher
-                        .pictures
-                        .cost(polisher.live, patch, &mut search.pictures),
-                )
+                let (live, pictures) = (&*polisher.live, &polisher.pictures);
+                let cost = pictures.cost(live, patch, &mut search.pictures);
+                let sum = pictures.error().sum() as f64;
+                let pays = |d: &Deviation| d.pays(live, patch, -cost as f64, sum);
+                let good = cost < 0 && polisher.limits.deviation.is_none_or(pays);
+                Some(good)
             });
             let mut committed = false;
-            for (&e, cost) in batch.iter().zip(costs) {
+            for (&e, good) in batch.iter().zip(outcomes) {
                 self.tried[e as usize] = now;
-                self.counters.evaluations += u64::from(cost.is_some());
-                if cost.is_none_or(|c| c >= 0) {
+                self.counters.evaluations += u64::from(good.is_some());
+                if good != Some(true) {
                     continue;
                 }
                 let mut patch = std::mem::take(&mut self.own.patch);
@@ -320,8 +333,8 @@ impl<E: Unrender> Polisher<'_, E> {
     /// The flip of an edge, where it is allowed.
     fn flip<'p>(&self, edge: u32, patch: &'p mut Patch) -> Option<&'p Patch> {
         let ends = self.live.edge(edge)?;
-        flip(self.live, ends, self.rules, patch).ok()?;
-        unfolded(self.live, patch).ok()?;
+        flip(self.live, ends, self.limits.rules, patch).ok()?;
+        unfolded(self.live, patch, self.limits.rules).ok()?;
         Some(patch)
     }
 

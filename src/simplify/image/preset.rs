@@ -1,8 +1,9 @@
 //! Presets: recipes that set several options at once, each with what it buys and costs.
 //!
-//! What was tried (see also the README): samples are better spent on views and on 2 x 2 samples per pixel than on
-//! resolution, because polishing fits the noise of pictures with one sample; with polishing, twice the target is as
-//! good a start for the pictures as three times; flips after every sweep are worth their cost.
+//! What was tried: samples are better spent on views and on 2 x 2 samples per pixel than on resolution, because polishing
+//! fits the noise of pictures with one sample; with polishing, 1.7 times the target is as good a start for the pictures as
+//! four times; flips after every sweep are worth their cost. On the bunny at 1,333 triangles weighing the deviation took
+//! 6 % off the mean distance and added 0.1 % to the judged error.
 
 use std::fmt;
 
@@ -11,18 +12,18 @@ use serde::{Deserialize, Serialize};
 use super::{ImageOptions, Polish, Size, Start};
 use crate::{collapse::Schedule, view::ViewsName};
 
-/// A recipe for image-driven simplification.
+/// A recipe for image-driven simplification. Sides of pictures are those for 1,333 triangles; see [`Size`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
     /// The published method to the letter: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.
     Paper,
-    /// For many meshes in little time: 24 views and two sweeps of polishing.
+    /// 42 views of 72 x 72 pixels, images from 1.35 times the target, one sweep of polishing.
     Fast,
-    /// 42 views with 2 x 2 samples per pixel and four sweeps of polishing.
+    /// 42 views of 96 x 96 pixels, images from 1.7 times the target, four sweeps of polishing.
     #[default]
     Default,
-    /// For a mesh that is made once and seen often: more views, larger pictures, cameras that turn between sweeps.
+    /// 56 views of 120 x 120 pixels, images from 2.5 times the target, ten sweeps, cameras turned twice.
     Best,
 }
 
@@ -40,11 +41,11 @@ impl Preset {
     /// The options of the recipe.
     #[must_use]
     pub fn options(self) -> ImageOptions {
-        let recipe = |views, per_triangle, samples, start, polish| ImageOptions {
+        let recipe = |views, per_triangle, start, polish| ImageOptions {
             preset: self,
             views: ViewsName::Spiral(views),
             size: Size::PerTriangle { per_triangle },
-            samples,
+            samples: 2,
             start: Start::Times(start),
             polish,
             ..Self::Paper.options()
@@ -53,6 +54,7 @@ impl Preset {
             sweeps,
             flips_every: 1,
             cameras_every,
+            deviation_weight: 0.5,
         };
         match self {
             Self::Paper => ImageOptions {
@@ -68,9 +70,9 @@ impl Preset {
                 placement: super::super::memoryless::MemorylessOptions::default(),
                 polish: Polish::default(),
             },
-            Self::Fast => recipe(24, 7, 2, 2, polish(2, 0)),
-            Self::Default => recipe(42, 7, 2, 2, polish(4, 0)),
-            Self::Best => recipe(64, 12, 2, 4, polish(16, 4)),
+            Self::Fast => recipe(42, 1, 1.35, polish(1, 0)),
+            Self::Default => recipe(42, 4, 1.7, polish(4, 0)),
+            Self::Best => recipe(56, 9, 2.5, polish(10, 4)),
         }
     }
 }

@@ -87,6 +87,53 @@ fn the_subdivided_octahedron_has_the_published_counts_and_sums() {
 }
 
 #[test]
+fn spirals_cover_the_sphere_evenly_with_any_number_of_views() {
+    for n in [1, 2, 7, 24, 42, 100, 501] {
+        let set = directions::spiral(n);
+        assert_eq!(set.len(), n as usize);
+        assert!(set.iter().all(|d| (d.length() - 1.0).abs() < 1e-15), "{n}");
+        if n < 20 {
+            continue;
+        }
+        // Every point of the sphere has a direction nearby: no farther than twice the radius of a fair share.
+        let share = 2.0 / sqrt(f64::from(n));
+        for probe in directions::octahedron(3) {
+            let nearest = set.iter().map(|d| (*d - probe).length());
+            let nearest = nearest.fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1.5 * share, "{n}: {probe} is {nearest} away");
+        }
+        let closest = set.iter().enumerate().flat_map(|(i, a)| {
+            let rest = set[i + 1..].iter();
+            rest.map(move |b| (*a - *b).length())
+        });
+        let closest = closest.fold(f64::INFINITY, f64::min);
+        assert!(closest > 0.8 * share, "{n}: {closest}");
+    }
+}
+
+#[test]
+fn turned_directions_keep_their_angles_and_never_come_back() {
+    let set = directions::spiral(12);
+    assert_eq!(directions::turned(&set, 0), set);
+    let rounds: Vec<_> = (0..40).map(|r| directions::turned(&set, r)).collect();
+    for (r, turned) in rounds.iter().enumerate() {
+        for i in 0..set.len() {
+            for j in 0..set.len() {
+                assert!((turned[i].dot(turned[j]) - set[i].dot(set[j])).abs() < 1e-14);
+            }
+            let hand = |s: &[DVec3]| s[i].cross(s[(i + 1) % 12]).dot(s[(i + 2) % 12]);
+            assert!((hand(turned) - hand(&set)).abs() < 1e-14, "no mirror image");
+        }
+        for earlier in &rounds[..r] {
+            assert!(
+                (turned[0] - earlier[0]).length() > 1e-3
+                    || (turned[5] - earlier[5]).length() > 1e-3
+            );
+        }
+    }
+}
+
+#[test]
 fn presets_are_those_of_the_paper() {
     let s = unit_sphere();
     let costs = ViewSet::costs(&s).expect("views");
@@ -173,6 +220,8 @@ fn names_of_view_sets_read_back_as_written() {
         "rhombicuboctahedron",
         "octahedron:0",
         "octahedron:5",
+        "spiral:1",
+        "spiral:4098",
         "a/b.json",
     ] {
         let name: ViewsName = text.parse().expect(text);
@@ -190,6 +239,9 @@ fn names_of_view_sets_read_back_as_written() {
         "octahedron:6",
         "octahedron:-1",
         "Dodecahedron",
+        "spiral:0",
+        "spiral:4099",
+        "spiral:x",
     ] {
         assert!(
             matches!(text.parse::<ViewsName>(), Err(Error::Usage(_))),
