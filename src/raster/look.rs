@@ -205,7 +205,7 @@ impl LayerView {
                 None => around.lanes.corner(c.vertex as usize, around.lane),
             });
             if let [Some(a), Some(b), Some(c)] = corners {
-                match Small::new([a, b, c], bits, self.view.cull, image) {
+                match Small::fit([a, b, c], bits, self.view.cull, image) {
                     Fit::Nothing => continue,
                     Fit::Small(small) => {
                         if self.draw_small(around, &small, face.id, look) {
@@ -480,7 +480,7 @@ impl Look {
                 y: v.y,
                 depth: v.depth,
             });
-            match Small::new(corners, projector.bits(), cull, projector.image()) {
+            match Small::fit(corners, projector.bits(), cull, projector.image()) {
                 Fit::Nothing => return,
                 Fit::Small(small) => {
                     let origin = (self.region.x0, self.region.y0);

@@ -44,12 +44,8 @@ pub(super) struct Small {
     depth_min: u32,
 }
 
-/// What [`Small::new`] made of three corners.
+/// What [`Small::fit`] made of three corners.
 #[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "looked at once, where it is made; nothing is stored"
-)]
 pub(super) enum Fit {
     /// It fits.
     Small(Small),
@@ -68,7 +64,7 @@ pub(super) struct Covered {
 
 impl Small {
     #[inline]
-    pub(super) fn new(
+    pub(super) fn fit(
         [a, mut b, mut c]: [SmallCorner; 3],
         bits: SubpixelBits,
         cull: Cull,
@@ -150,11 +146,10 @@ impl Small {
                     let length = (end - first) as usize;
                     let at = &mut at[count..count + length];
                     let above = &mut above[count..count + length];
-                    let mut i = start + first as u32;
                     let mut n = sum.wrapping_add(self.above_x.wrapping_mul(i64::from(first)));
-                    for (at, above) in at.iter_mut().zip(above) {
+                    let columns = start + first as u32..;
+                    for (i, (at, above)) in columns.zip(at.iter_mut().zip(above)) {
                         (*at, *above) = (i, n);
-                        i += 1;
                         n = n.wrapping_add(self.above_x);
                     }
                     count += length;
@@ -275,7 +270,7 @@ mod tests {
             if let Some(setup) = setup {
                 setup.fragments(image, |x, y, depth| expected.push(((y + 1) as u32 * 64 + (x + 2) as u32, depth)));
             }
-            match Small::new(corners, bits, cull, image) {
+            match Small::fit(corners, bits, cull, image) {
                 Fit::Large => {
                     let extent = |of: fn(&SmallCorner) -> i32| {
                         let all = corners.iter().map(of);
