@@ -270,8 +270,7 @@ impl<'a> Run<'a> {
         };
         let method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
         self.v_mesh = Some(visibility.mesh());
-        let begin = (self.live.triangle_count(), Counters::default());
-        Ok(self.phase("visibility", method, target, begin)?.0)
+        Ok(self.thinned("visibility", method, target)?.0)
     }
 
     fn finish(self, stop: Stop) -> Result<Outcome> {

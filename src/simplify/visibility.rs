@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::quadric::{QuadricMethod, QuadricOptions};
 use crate::{
     Error, Result,
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
     visibility,
 };
 
@@ -109,8 +109,36 @@ impl Method for VisibilityMethod {
         })
     }
 
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let [u, w] = live.edge(edge)?;
+        let sum = self.placing.quadric(u).plus(self.placing.quadric(w));
+        let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
+        let place = sum.place([live.position(u), live.position(w)]);
+        Some(seen.error(place) + self.tie_weight * sum.error(place))
+    }
+
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.placing.committed(live, patch);
         self.ordering.committed(live, patch);
+    }
+}
+
+impl Divisible for VisibilityMethod {
+    fn part(&self, live: &LiveMesh, vertices: &[u32]) -> Self {
+        Self {
+            placing: self.placing.part(live, vertices),
+            ordering: self.ordering.part(live, vertices),
+            tie_weight: self.tie_weight,
+        }
+    }
+
+    fn unite(&mut self, part: Self, vertices: &[u32]) {
+        self.placing.unite(part.placing, vertices);
+        self.ordering.unite(part.ordering, vertices);
+    }
+
+    fn relinked(&mut self, live: &LiveMesh) {
+        self.placing.relinked(live);
+        self.ordering.relinked(live);
     }
 }

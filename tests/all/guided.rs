@@ -129,7 +129,8 @@ fn outside(mesh: &Mesh) -> (f64, usize) {
     let triangles: Vec<usize> = (0..mesh.triangles().len()).filter(far).collect();
     let deviation = |t: &usize| {
         let [a, b, c] = mesh.corners(*t);
-        (1.0 - ((a + b + c) / 3.0).length()).powi(2)
+        let d = 1.0 - ((a + b + c) / 3.0).length();
+        d * d
     };
     let sum: f64 = triangles.iter().map(deviation).sum();
     (sum / triangles.len() as f64, triangles.len())

@@ -211,9 +211,11 @@ proptest! {
         kind in 0_usize..8, at: prop::sample::Index, bit in 0_u8..8, cut: bool,
     ) {
         let mesh = shapes::any(kind, 5);
-        let bytes = run(&mesh, 30, DrivingShading::Flat).history.to_bytes();
+        let history = run(&mesh, 30, DrivingShading::Flat).history;
+        let bytes = history.to_bytes();
         // Somewhere in the records, which follow the options; the checksum is repaired.
-        let options = bytes.iter().rposition(|&b| b == b'}').expect("JSON");
+        let text = history.header().options.as_bytes();
+        let options = bytes.windows(text.len()).position(|w| w == text).expect("JSON") + text.len();
         let at = options + at.index(bytes.len() - 32 - options);
         let mut damaged = bytes[..bytes.len() - 32].to_vec();
         if cut {

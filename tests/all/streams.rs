@@ -213,7 +213,10 @@ fn a_pipe_is_read_like_a_file() {
 #[test]
 fn more_driving_pixels_than_fit_into_memory_are_refused() {
     let folder = with_torus();
-    for more in [&["--size", "4096"][..], &["--views", "octahedron:5"]] {
+    for more in [
+        &["--size", "2048"][..],
+        &["--size", "256", "--views", "octahedron:5"],
+    ] {
         let arguments = [&TORUS[..], &["50"], more].concat();
         let message = expect(&folder, 4, &arguments);
         assert!(message.contains("do not fit"), "{arguments:?}: {message}");

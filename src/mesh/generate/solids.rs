@@ -27,7 +27,7 @@ pub(super) fn turned(rows: &[(f64, f64)], around: u32, shape: impl Fn(f64, f64) 
     let rings: Vec<Vec<DVec3>> = inner.iter().map(ring).collect();
     let pole = |end: usize, next: usize| {
         let ((_, z), (_, beside)) = (rows.get(end)?, rows.get(next)?);
-        let cone = z < beside || z > beside;
+        let cone = (z - beside).abs() > 0.0;
         let round = (0..around).all(|k| {
             let theta = TAU * (f64::from(k) / f64::from(around));
             (shape(theta, *beside) - shape(0.0, *beside)).abs() < 1e-9
