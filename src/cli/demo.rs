@@ -14,7 +14,7 @@ use crate::{
         sheet::{Style, Tile, sheet},
     },
     raster::{self, Plane, Scene},
-    simplify::{Amount, MethodOptions, Options as RunOptions, image::ImageOptions, simplify},
+    simplify::{Amount, MethodOptions, Options as RunOptions, image::Preset, simplify},
     view::{Sphere, View, ViewSet, frame_of},
 };
 
@@ -193,13 +193,10 @@ fn scene(
     Ok(())
 }
 
-/// Driven by images of a quarter of the usual pixels, so that the demo ends within a minute.
+/// The recipe for who is in a hurry, so that the demo ends within a minute.
 fn by_images(amount: Amount) -> RunOptions {
     let mut options = RunOptions::image(amount);
-    options.method = MethodOptions::Image(ImageOptions {
-        size: 128.into(),
-        ..ImageOptions::default()
-    });
+    options.method = MethodOptions::Image(Preset::Fast.options());
     options
 }
 

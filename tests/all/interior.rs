@@ -9,7 +9,7 @@ use lodmark::{
     raster::Scene,
     simplify::{
         Amount, MethodOptions, Options,
-        image::{ImageOptions, Size, Start},
+        image::{ImageOptions, Preset, Size, Start},
         simplify,
     },
     view::{Cull, Projection, Sphere, ViewSet, directions::rhombicuboctahedron, frame_of},
@@ -25,7 +25,7 @@ fn results() -> &'static (Mesh, [Mesh; 3]) {
                 size: Size::Pixels(48),
                 start: Start::Input,
                 interior_views,
-                ..ImageOptions::default()
+                ..Preset::Paper.options()
             };
             let options = Options {
                 method: MethodOptions::Image(own),

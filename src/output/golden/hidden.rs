@@ -11,7 +11,7 @@ use crate::{
     raster::{Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Replay,
-        image::{ImageOptions, Size, Start},
+        image::{ImageOptions, Preset, Size, Start},
         quadric::QuadricOptions,
         simplify,
         visibility::VisibilityOptions,
@@ -74,7 +74,7 @@ fn interiors(collector: &mut Collector) -> Result<()> {
             size: Size::Pixels(48),
             start: Start::Triangles(1_100),
             interior_views,
-            ..ImageOptions::default()
+            ..Preset::Paper.options()
         };
         let options = Options {
             method: MethodOptions::Image(own),

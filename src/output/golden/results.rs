@@ -154,8 +154,7 @@ fn side_by_side(collector: &mut Collector) -> Result<()> {
     let mesh = canonical(&generate::interlocking_tori(32, 32)).mesh;
     let target = Amount::Triangles(260);
     let driving = ImageOptions {
-        size: 128.into(),
-        start: Start::Triangles(1_040),
+        size: 72.into(),
         ..ImageOptions::default()
     };
     let by_images = simplify(&mesh, &image(&driving, target), &Silent)?.mesh;
