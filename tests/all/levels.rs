@@ -113,6 +113,7 @@ fn every_level_is_the_run_to_it_and_is_judged_as_compare_does() {
     let error = |i: usize| levels[i]["image_error"].as_f64().expect("a number");
     let less = |i: usize| levels[i]["less"].as_f64().expect("a number");
     assert_eq!(less(2), 100.0 * (1.0 - error(2) / error(0)));
+    assert_eq!(less(3), 100.0 * (1.0 - error(3) / error(1)));
     assert!(levels[0]["less"].is_null());
     let mean = &found["mean_less_image_error"][0];
     assert_eq!(mean["method"], "visibility");

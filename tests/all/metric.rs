@@ -298,6 +298,8 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(crate::cases(256))]
+
     #[test]
     fn a_red_picture_is_grey_where_nothing_differs_and_redder_where_more_does(
         e: u8, a: u8, b: u8, scale in 1_u8..=255,
