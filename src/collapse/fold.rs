@@ -16,6 +16,9 @@ use crate::num::math::sqrt;
 /// # Errors
 /// [`Refusal::Fold`].
 pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refusal> {
+    if rules.fold_cosine <= -1.0 {
+        return Ok(());
+    }
     let changed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
     let facets = |faces: &[PatchFace], after: bool| {
         let facet = |f: &PatchFace| Facet {
@@ -48,6 +51,9 @@ pub fn ring_unfolded(
     position: DVec3,
     rules: Rules,
 ) -> Result<(), Refusal> {
+    if rules.fold_cosine <= -1.0 {
+        return Ok(());
+    }
     let changed = |id: u32| ring.faces.binary_search_by_key(&id, |f| f.id).is_ok();
     let [u, w] = ring.ends;
     // Nearly every ring has room on the stack.

@@ -136,12 +136,18 @@ impl Options {
         )
     }
 
+    /// Only images need a guard against folds: Gouraud shading cannot see them. For the methods that measure distances it
+    /// cost 3 to 4 % of flat RMS on the dragon at 8,191 triangles, so there it is off.
     fn new(method: MethodOptions, target: Amount) -> Self {
+        let mut rules = Rules::default();
+        if !matches!(method, MethodOptions::Image(_)) {
+            rules.fold_cosine = -1.0;
+        }
         Self {
             method,
             target,
             error_rms: None,
-            rules: Rules::default(),
+            rules,
             measure_rank: 0,
             schedule: Schedule::Semi,
         }
