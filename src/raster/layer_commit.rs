@@ -1,11 +1,13 @@
 //! How the picture of one view, and its layers, take on a change.
 
 use super::{
-    Region,
+    Face, Projector, Region, ScreenVertex,
     layer_view::{Around, LayerView},
     look::Look,
+    small::{Fit, Small, SmallCorner},
     stacks::TILE,
 };
+use crate::view::Cull;
 
 impl LayerView {
     /// Makes the change that the look has seen.
@@ -88,5 +90,45 @@ impl LayerView {
                 self.deepest[row * self.tile_columns + column] = deepest | 0xffff_ffff_ffff;
             }
         }
+    }
+}
+
+impl Look {
+    /// Calls `visit(sample, (x, y), depth)` for every fragment of a face in the region.
+    #[inline]
+    pub(super) fn fragments(
+        &mut self,
+        face: &Face,
+        projector: &Projector,
+        cull: Cull,
+        width: usize,
+        mut visit: impl FnMut(usize, (i32, i32), u32),
+    ) {
+        if !face.screen.iter().any(ScreenVertex::is_outside) {
+            let corners = face.screen.map(|v| SmallCorner {
+                x: v.x,
+                y: v.y,
+                depth: v.depth,
+            });
+            match Small::fit(corners, projector.bits(), cull, projector.image()) {
+                Fit::Nothing => return,
+                Fit::Small(small) => {
+                    let origin = (self.region.x0, self.region.y0);
+                    let count = small.list(origin, self.shift, &mut self.covered);
+                    for j in 0..count {
+                        let at = self.covered.at[j];
+                        let depth = small.depth(self.covered.above[j]);
+                        visit(self.sample(at, width), self.place(at), depth);
+                    }
+                    return;
+                }
+                Fit::Large => {}
+            }
+        }
+        face.pieces(projector, cull, |setup, _| {
+            setup.fragments(projector.image(), |x, y, depth| {
+                visit(y as usize * width + x as usize, (x, y), depth);
+            });
+        });
     }
 }

@@ -6,15 +6,14 @@
 //! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others look at the layers.
 
 use super::{
-    Face, Paint, Projector, Region, ScreenVertex, Setup,
+    Face, Paint, Region, ScreenVertex, Setup,
     lanes::clipped_pixels,
     layer_view::{Around, LayerView},
     prepare::After,
-    small::{Covered, Fit, Small, SmallCorner},
+    small::{Covered, Fit, Small},
     stacks::TILE,
     unrender::difference,
 };
-use crate::view::Cull;
 
 /// A fresh triangle, or a piece of one, that won a pixel.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +28,7 @@ struct Piece {
 pub(super) struct Look {
     /// The pixels that may change, and the logarithm of the stride of the buffers below.
     pub(super) region: Region,
-    shift: u32,
+    pub(super) shift: u32,
     /// What a key must be below to be seen at a pixel of the region. Pixels that still show what they did, or what
     /// was behind: a lower bound of that; others: the nearest fresh key. After the look the keys of touched pixels.
     pub(super) slots: Vec<u64>,
@@ -47,7 +46,7 @@ pub(super) struct Look {
     /// Pixels of all regions that were gone through; only ever counted up.
     pub(super) pixels_seen: usize,
     pieces: Vec<Piece>,
-    covered: Covered,
+    pub(super) covered: Covered,
     /// Columns of a row that show a triangle.
     columns: Vec<i32>,
     /// By pixel of the picture: the change of the sum of its samples; 0 between looks.
@@ -462,43 +461,5 @@ impl Look {
             return false;
         }
         self.who[((y - r.y0) as usize) << self.shift | (x - r.x0) as usize] != 0
-    }
-
-    /// Calls `visit(sample, (x, y), depth)` for every fragment of a face in the region.
-    #[inline]
-    pub(super) fn fragments(
-        &mut self,
-        face: &Face,
-        projector: &Projector,
-        cull: Cull,
-        width: usize,
-        mut visit: impl FnMut(usize, (i32, i32), u32),
-    ) {
-        if !face.screen.iter().any(ScreenVertex::is_outside) {
-            let corners = face.screen.map(|v| SmallCorner {
-                x: v.x,
-                y: v.y,
-                depth: v.depth,
-            });
-            match Small::fit(corners, projector.bits(), cull, projector.image()) {
-                Fit::Nothing => return,
-                Fit::Small(small) => {
-                    let origin = (self.region.x0, self.region.y0);
-                    let count = small.list(origin, self.shift, &mut self.covered);
-                    for j in 0..count {
-                        let at = self.covered.at[j];
-                        let depth = small.depth(self.covered.above[j]);
-                        visit(self.sample(at, width), self.place(at), depth);
-                    }
-                    return;
-                }
-                Fit::Large => {}
-            }
-        }
-        face.pieces(projector, cull, |setup, _| {
-            setup.fragments(projector.image(), |x, y, depth| {
-                visit(y as usize * width + x as usize, (x, y), depth);
-            });
-        });
     }
 }

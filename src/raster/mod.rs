@@ -6,7 +6,8 @@
 //! with `+ - * / sqrt` and becomes an 8-bit level before images are compared.
 //!
 //! Whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them. Pictures that follow a change of the mesh:
-//! [`Unrender`], with the published method in [`BucketEngine`].
+//! [`Unrender`], with the published method in [`BucketEngine`] and the fast one
+//! in [`LayerEngine`].
 
 mod buckets;
 mod clip;
