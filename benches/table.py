@@ -6,9 +6,9 @@
     python3 benches/table.py --runs 1 --only 'bunny'             # a quick look at some rows
 
 Seconds are the least wall time of several whole processes (minimum, because other work on the machine only ever adds),
-with the peak memory of the largest. Ratios are RMS by `lodmark compare` over that of the mesh which CGAL's
-Lindstrom-Turk simplification made of the same model (in LODMARK_PEERS), so no baseline of our own can drift. Needs the
-models and peers; a row whose files are absent is left out and said to be.
+with the peak memory of the largest. Ratios are RMS by `lodmark compare` over that of the mesh which CGAL made of the same
+model (in LODMARK_PEERS) by its Lindstrom-Turk simplification, for the quadric row by its Garland-Heckbert one, so no
+baseline of our own can drift. Needs the models and peers; a row whose files are absent is left out and said to be.
 """
 
 import argparse
@@ -26,7 +26,7 @@ MODELS = Path(os.environ.get("LODMARK_MODELS", ROOT / "../shared/models"))
 PEERS = Path(os.environ.get("LODMARK_PEERS", ROOT / "../shared/peers"))
 BEGIN, END = "<!-- table: begin (benches/table.py --write) -->", "<!-- table: end -->"
 
-# model, arguments of `simplify`, and the peers to be divided by: flat, Gouraud (None: not judged).
+# Model, arguments of `simplify`, and the peer whose RMS is the divisor.
 ROWS = [
     ("bunny", ["--triangles", "1333", "--preset", "fast"], "bunny-1333-cgal-lindstrom-turk"),
     ("bunny", ["--triangles", "1333"], "bunny-1333-cgal-lindstrom-turk"),

@@ -3,8 +3,9 @@
 //! Edges collapse in the order of what their collapse does to the pictures: the cost is equation 8, the change of the
 //! sum of squared luma differences over all views, as an exact integer that may be negative and is not clamped. The new
 //! vertex is placed by the memoryless method (section 4.1), whose own cost is the second key: hidden edges all cost 0,
-//! and it keeps hidden parts in shape. Evaluation is lazy as in section 4.2.2; the pictures follow every collapse as
-//! in section 4.2.3.
+//! and it keeps hidden parts in shape. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
+//! the preset is the paper's; the pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
+//! and flips, which the paper does not have, comes after the last collapse.
 
 mod change;
 mod cost;
