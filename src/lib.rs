@@ -42,6 +42,7 @@
 //!                |
 //!                +-> view -> raster -> metric --+     pictures
 //!                |             +-> visibility --+
+//!                +-> bound ---------------------+
 //!                +-> collapse ------------------+-> simplify -> output -> cli     surgery meets pictures in simplify
 //! ```
 //!
@@ -54,6 +55,7 @@
 //! | [`raster`] | clip, snap, spans, depth, ids, shading; un-rendering |
 //! | [`metric`] | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
 //! | [`visibility`] | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts; the proof of ID buffers by ray casting |
+//! | [`bound`] | what is guaranteed: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
 //! | [`collapse`] | one engine for every method: live mesh, queue, legality, wedges, history and replay |
 //! | [`simplify`] | the methods, their options and outcomes |
 //! | [`output`] | PNG, npy, JSON, contact sheets, goldens |
@@ -69,6 +71,7 @@
 mod error;
 mod progress;
 
+pub mod bound;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod collapse;

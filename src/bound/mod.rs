@@ -1,0 +1,5 @@
+//! Guarantees: how far a simplification is from its original, as a bound that holds and not as an estimate.
+//!
+//! Eisemann & Décoret 2007 bound the angle under which a viewer in a view cell can see the difference; Cox &
+//! Chibelushi 2005 keep a collapse inside a tolerance volume. A verifier that shares no code with either checks their
+//! claims.
