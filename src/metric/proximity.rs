@@ -105,6 +105,34 @@ impl Proximity {
         }
         best
     }
+
+    /// True where a triangle within the root of `squared` of `p` has a normal along `direction`: their product is
+    /// positive.
+    pub(super) fn looks_along(&self, p: DVec3, direction: DVec3, squared: f64) -> bool {
+        let mut stack = [0_u32; DEPTH + 1];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let index = stack[height];
+            let node = &self.nodes[index as usize];
+            if node.squared_distance(p) > squared {
+                continue;
+            }
+            if node.count == 0 {
+                // As above.
+                stack[height] = index + 1;
+                stack[height + 1] = node.index;
+                height += 2;
+                continue;
+            }
+            let leaf = node.index as usize..(node.index + node.count) as usize;
+            let looks = |t: &Triangle| t.normal().dot(direction) > 0.0 && t.closest(p).1 <= squared;
+            if self.triangles[leaf].iter().any(looks) {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 /// A binary tree with full leaves except the last: one inner node less than leaves.

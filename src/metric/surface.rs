@@ -131,9 +131,7 @@ pub fn surface_distance(
             "0 samples measure no distance; expected at least 1".into(),
         ));
     }
-    let (low, high) = reference.bounds().ok_or_else(|| empty("reference"))?;
-    let frame = frame_of(low, high);
-    let diagonal = length(frame.enter(high) - frame.enter(low));
+    let (frame, diagonal) = frame_and_diagonal(reference)?;
     let reference = Surface::new(reference, frame, "reference")?;
     let candidate = Surface::new(candidate, frame, "candidate")?;
     let report = |from: &Surface, to: &Surface, phase| -> Result<OneSided> {
@@ -157,6 +155,13 @@ fn empty(which: &str) -> Error {
         "-",
         format!("the {which} mesh has no triangles; expected at least one to measure distances to"),
     )
+}
+
+/// The frame that a reference is measured in, and the diagonal of its box in that frame.
+pub(super) fn frame_and_diagonal(reference: &Mesh) -> Result<(Frame, f64)> {
+    let (low, high) = reference.bounds().ok_or_else(|| empty("reference"))?;
+    let frame = frame_of(low, high);
+    Ok((frame, length(frame.enter(high) - frame.enter(low))))
 }
 
 /// The frame in which the box's diagonal lies in [0.5, 1); for a box without size the one of its coordinates.

@@ -6,6 +6,8 @@
 //! `f64` with `+ - * /` in one written order; the corners are ordered by coordinates first, so the result has the
 //! same bits for every order of the corners. Accurate to a few ulps of the coordinates.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 /// Squared length, in the order in which box distances are summed as well: see `proximity`.
@@ -16,40 +18,54 @@ pub(super) fn squared(v: DVec3) -> f64 {
 
 /// A triangle with its corners in ascending order of (x, y, z).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Triangle([DVec3; 3]);
+pub(super) struct Triangle {
+    corners: [DVec3; 3],
+    /// Whether ordering the corners turned the other side up.
+    turned: bool,
+}
 
 impl Triangle {
     pub(super) fn new(mut corners: [DVec3; 3]) -> Self {
-        corners.sort_by(|a, b| {
-            a.x.total_cmp(&b.x)
-                .then(a.y.total_cmp(&b.y))
-                .then(a.z.total_cmp(&b.z))
-        });
-        Self(corners)
+        let mut turned = false;
+        // Three exchanges sort three corners, and each turns the triangle over.
+        for i in [0, 1, 0] {
+            if order(corners[i], corners[i + 1]).is_gt() {
+                corners.swap(i, i + 1);
+                turned = !turned;
+            }
+        }
+        Self { corners, turned }
+    }
+
+    /// Twice its area along its normal, as the corners were given.
+    pub(super) fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        let normal = (b - a).cross(c - a);
+        if self.turned { -normal } else { normal }
     }
 
     pub(super) fn corners(&self) -> [DVec3; 3] {
-        self.0
+        self.corners
     }
 
     pub(super) fn low(&self) -> DVec3 {
-        self.0[0].min(self.0[1]).min(self.0[2])
+        self.corners[0].min(self.corners[1]).min(self.corners[2])
     }
 
     pub(super) fn high(&self) -> DVec3 {
-        self.0[0].max(self.0[1]).max(self.0[2])
+        self.corners[0].max(self.corners[1]).max(self.corners[2])
     }
 
     /// Twice the area.
     pub(super) fn double_area(&self) -> f64 {
-        let [a, b, c] = self.0;
+        let [a, b, c] = self.corners;
         crate::num::math::length((b - a).cross(c - a))
     }
 
     /// The closest point, inside the bounding box of the corners, and its squared distance.
     #[inline]
     pub(super) fn closest(&self, p: DVec3) -> (DVec3, f64) {
-        let [a, b, c] = self.0;
+        let [a, b, c] = self.corners;
         let (ab, ac, ap) = (b - a, c - a, p - a);
         let normal = ab.cross(ac);
         let norm = normal.dot(normal);
@@ -70,7 +86,7 @@ impl Triangle {
     }
 
     fn closest_on_edges(&self, p: DVec3) -> (DVec3, f64) {
-        let [a, b, c] = self.0;
+        let [a, b, c] = self.corners;
         let on = |from, to| self.admit(p, closest_on_segment(p, from, to));
         nearer(nearer(on(a, b), on(a, c)), on(b, c))
     }
@@ -82,6 +98,13 @@ impl Triangle {
         let q = candidate.max(self.low()).min(self.high());
         (q, squared(p - q))
     }
+}
+
+/// By x, then y, then z.
+fn order(a: DVec3, b: DVec3) -> Ordering {
+    a.x.total_cmp(&b.x)
+        .then(a.y.total_cmp(&b.y))
+        .then(a.z.total_cmp(&b.z))
 }
 
 /// The first of two candidates unless the second is closer.

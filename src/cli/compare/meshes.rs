@@ -11,6 +11,7 @@ use crate::{
     mesh::{Edges, Mesh, content_sha256},
     metric::{
         appearance::{Appearance, WorstView, appearance, flat, image_error_views, pictures},
+        folds::{Folds, folds},
         luma::SquaredError,
         silhouette::{SilhouetteHistogram, silhouette_histogram},
         surface::{Distances, SurfaceDistance, surface_distance},
@@ -69,6 +70,8 @@ struct Judgement<'a> {
     distance_relative: Option<Distances>,
     /// Each way.
     distance: Option<SurfaceDistance>,
+    #[serde(flatten)]
+    folds: Folds,
     #[serde(skip_serializing_if = "Option::is_none")]
     image_error: Option<ImageError>,
     views: Vec<Pictures>,
@@ -140,7 +143,10 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
                 terminal,
             )?),
         };
-        found.push(Judgement::new(reference, shape, look, distance, &set));
+        let folds = folds(&reference.mesh, &candidate.mesh, terminal)?;
+        found.push(Judgement::new(
+            reference, shape, look, distance, folds, &set,
+        ));
     }
     if options.image_error {
         let (size, samples) = (options.size.unwrap_or(512), options.samples.unwrap_or(2));
@@ -240,6 +246,7 @@ impl<'a> Judgement<'a> {
         candidate: Shape<'a>,
         look: &Appearance,
         distance: Option<SurfaceDistance>,
+        folds: Folds,
         set: &ViewSet,
     ) -> Self {
         let (flat, gouraud) = (look.flat.total(), look.gouraud.total());
@@ -260,6 +267,7 @@ impl<'a> Judgement<'a> {
             distance_max: absolute.map(|d| d.max),
             distance_relative: distance.and_then(|d| d.relative()),
             distance,
+            folds,
             image_error: None,
             views: views
                 .map(|(i, (view, (flat, gouraud)))| Pictures {
@@ -357,6 +365,8 @@ fn show(options: &Options, reference: &Shape<'_>, found: &[Judgement<'_>]) {
         "Gouraud",
         "mean %",
         "max %",
+        "folds",
+        "flipped",
         "equal",
     ];
     let shape = |s: &Shape<'_>| {
@@ -378,6 +388,8 @@ fn show(options: &Options, reference: &Shape<'_>, found: &[Judgement<'_>]) {
             table::number(j.psnr_gouraud, 2),
             table::number(percent(|d| d.mean), 5),
             table::number(percent(|d| d.max), 4),
+            j.folds.folded_edges.to_string(),
+            j.folds.flipped_faces.to_string(),
             if j.equal { "yes" } else { "no" }.into(),
         ]);
         rows.push(row);

@@ -1,0 +1,164 @@
+//! Folds and flipped faces: what a shaded picture may hide and a light or a printer shows.
+//!
+//! An edge is *folded* where the normals of its two faces have a cosine below [`FOLD_COSINE`]: the faces nearly lie on
+//! each other. It counts where no folded edge of the reference is within [`REACH`] of its middle. A face is *flipped*
+//! where all of the reference's surface around its centroid looks the other way: within [`REACH`], or as far as its
+//! nearest point where that is farther. A thin sheet has both sides near, so it hides no face and accuses none.
+//! Edges with one face or more than two have no angle; faces without area have no side.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Proximity, surface::frame_and_diagonal, triangle::Triangle};
+use crate::{
+    Error, Progress, Result,
+    mesh::{Edges, Mesh},
+    num::math::{length, sqrt},
+};
+
+/// Cosine of the normals below which an edge is folded.
+pub const FOLD_COSINE: f64 = -0.9;
+
+/// How near the reference's surface counts, as a fraction of its diagonal.
+pub const REACH: f64 = 0.01;
+
+/// Folds and flipped faces of a mesh that its reference does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Folds {
+    /// Folded edges away from those of the reference.
+    pub folded_edges: u64,
+    /// Faces that look the other way than the reference around them.
+    pub flipped_faces: u64,
+}
+
+/// The folds and flipped faces of `candidate` beside `reference`, both welded.
+///
+/// Independent of threads and orders. O((edges + faces) log faces) in practice.
+///
+/// # Errors
+/// [`Error::Input`] where a mesh has no triangles; [`Error::Interrupted`].
+pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Result<Folds> {
+    let (frame, diagonal) = frame_and_diagonal(reference)?;
+    let reach = REACH * diagonal;
+    let (reference, candidate) = (reference.enter_frame(frame), candidate.enter_frame(frame));
+    progress.step("folds", 0, 1)?;
+    let creases = folded(&reference).into_iter().map(|[a, b]| [a, b, b]);
+    let creases = Proximity::new(creases.collect());
+    let is_new = |&&[a, b]: &&[DVec3; 2]| {
+        let middle = (a + b) * 0.5;
+        let near = creases.as_ref().map(|c| c.squared_distance(middle, 0).0);
+        near.is_none_or(|squared| squared > reach * reach)
+    };
+    let folded_edges = folded(&candidate).iter().filter(is_new).count() as u64;
+    let surface = Proximity::of(corners(&reference).map(Triangle::new).collect());
+    let surface = surface.ok_or_else(|| Error::input("-", "a reference without triangles"))?;
+    let faces: Vec<[DVec3; 3]> = corners(&candidate).collect();
+    let is_flipped = |face: &&[DVec3; 3]| {
+        let [a, b, c] = **face;
+        let normal = (b - a).cross(c - a);
+        let centroid = (a + b + c) / 3.0;
+        // The nearest surface itself must count, whatever is rounded.
+        let nearest = 1.000_001 * sqrt(surface.squared_distance(centroid, 0).0);
+        let squared = nearest.max(reach) * nearest.max(reach);
+        normal.dot(normal) > 0.0 && !surface.looks_along(centroid, normal, squared)
+    };
+    Ok(Folds {
+        folded_edges,
+        flipped_faces: faces.par_iter().filter(is_flipped).count() as u64,
+    })
+}
+
+fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
+    let positions = mesh.positions();
+    mesh.triangles()
+        .iter()
+        .map(|t| t.map(|v| positions[v as usize]))
+}
+
+/// The ends of the folded edges of a mesh.
+fn folded(mesh: &Mesh) -> Vec<[DVec3; 2]> {
+    let positions = mesh.positions();
+    let mut found = Vec::new();
+    for (edge, faces) in Edges::of(mesh).iter() {
+        let &[first, second] = faces else {
+            continue;
+        };
+        // The normal of a face as if it ran along the edge from its first end to its second.
+        let normal = |face: u32, forward: bool| {
+            let t = mesh.triangles()[face as usize];
+            let [a, b, c] = t.map(|v| positions[v as usize]);
+            let runs = (0..3).any(|k| [t[k], t[(k + 1) % 3]] == edge);
+            let normal = (b - a).cross(c - a);
+            if runs == forward { normal } else { -normal }
+        };
+        let (a, b) = (normal(first, true), normal(second, false));
+        let (dot, size) = (a.dot(b), length(a) * length(b));
+        if size > 0.0 && dot < FOLD_COSINE * size {
+            found.push(edge.map(|v| positions[v as usize]));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Silent, mesh::generate};
+
+    fn counted(reference: &Mesh, candidate: &Mesh) -> [u64; 2] {
+        let found = folds(reference, candidate, &Silent).expect("triangles");
+        [found.folded_edges, found.flipped_faces]
+    }
+
+    fn with_triangles(mesh: &Mesh, triangles: Vec<[u32; 3]>) -> Mesh {
+        Mesh::from_triangles(mesh.positions().to_vec(), triangles).expect("valid")
+    }
+
+    #[test]
+    fn a_face_turned_over_is_flipped_and_its_edges_are_no_folds() {
+        let sphere = generate::icosphere(3);
+        assert_eq!(counted(&sphere, &sphere), [0, 0]);
+        let mut triangles = sphere.triangles().to_vec();
+        triangles[7].swap(0, 1);
+        assert_eq!(
+            counted(&sphere, &with_triangles(&sphere, triangles)),
+            [0, 1]
+        );
+        let all: Vec<_> = sphere
+            .triangles()
+            .iter()
+            .map(|&[a, b, c]| [b, a, c])
+            .collect();
+        let turned = counted(&sphere, &with_triangles(&sphere, all));
+        assert_eq!(turned, [0, sphere.triangles().len() as u64]);
+    }
+
+    #[test]
+    fn a_vertex_pulled_over_its_neighbours_makes_folds_and_flips() {
+        let grid = generate::grid(10, 10, generate::Height::Flat);
+        let mut positions = grid.positions().to_vec();
+        let pulled = positions.len() / 2;
+        let step = positions[1] - positions[0];
+        positions[pulled] += step * 1.5;
+        let folded = Mesh::from_triangles(positions, grid.triangles().to_vec()).expect("valid");
+        let [edges, faces] = counted(&grid, &folded);
+        assert!(edges > 0 && faces > 0, "{edges} {faces}");
+        // What is folded in the reference is no fault of the candidate.
+        assert_eq!(counted(&folded, &folded), [0, 0]);
+    }
+
+    #[test]
+    fn both_sides_of_a_thin_sheet_accuse_no_face() {
+        let grid = generate::grid(8, 8, generate::Height::Flat);
+        let (low, high) = grid.bounds().expect("triangles");
+        let offset = DVec3::Z * (1e-4 * (high - low).length());
+        let mut positions = grid.positions().to_vec();
+        let count = positions.len() as u32;
+        positions.extend(grid.positions().iter().map(|&p| p - offset));
+        let mut triangles = grid.triangles().to_vec();
+        let below = grid.triangles().iter();
+        triangles.extend(below.map(|&[a, b, c]| [b + count, a + count, c + count]));
+        let sheet = Mesh::from_triangles(positions, triangles).expect("valid");
+        assert_eq!(counted(&sheet, &sheet), [0, 0]);
+    }
+}
