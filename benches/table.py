@@ -61,8 +61,8 @@ def judge(lodmark, reference, candidates, folder):
 
 def measure(lodmark, runs, only):
     table = [
-        "| command: `lodmark simplify MODEL OUT ...` | seconds | MB | flat RMS | ratio | Gouraud RMS | ratio |",
-        "|---|---|---|---|---|---|---|",
+        "| command: `lodmark simplify MODEL OUT ...` | seconds | MB | flat RMS | ratio | Gouraud RMS | ratio | folds, flipped |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     with tempfile.TemporaryDirectory(dir=ROOT / "target") as folder:
         folder = Path(folder)
@@ -81,6 +81,7 @@ def measure(lodmark, runs, only):
             cells = []
             for key in ("rms_flat", "rms_gouraud"):
                 cells += [f"{ours[key]:.3f}", f"{ours[key] / theirs[key]:.3f}"]
+            cells.append(f"{ours['folded_edges']}, {ours['flipped_faces']}")
             table.append(f"| {name} | {seconds:.2f} | {memory:.0f} | {' | '.join(cells)} |")
             print(table[-1], file=sys.stderr)
     return table

@@ -9,9 +9,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Proximity, surface::frame_and_diagonal, triangle::Triangle};
+use super::{
+    Proximity,
+    surface::{empty, frame_and_diagonal},
+};
 use crate::{
-    Error, Progress, Result,
+    Progress, Result,
     mesh::{Edges, Mesh},
     num::math::{length, sqrt},
 };
@@ -36,7 +39,7 @@ pub struct Folds {
 /// Independent of threads and orders. O((edges + faces) log faces) in practice.
 ///
 /// # Errors
-/// [`Error::Input`] where a mesh has no triangles; [`Error::Interrupted`].
+/// [`crate::Error::Input`] where the reference has no triangles; [`crate::Error::Interrupted`].
 pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Result<Folds> {
     let (frame, diagonal) = frame_and_diagonal(reference)?;
     let reach = REACH * diagonal;
@@ -50,22 +53,53 @@ pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Res
         near.is_none_or(|squared| squared > reach * reach)
     };
     let folded_edges = folded(&candidate).iter().filter(is_new).count() as u64;
-    let surface = Proximity::of(corners(&reference).map(Triangle::new).collect());
-    let surface = surface.ok_or_else(|| Error::input("-", "a reference without triangles"))?;
+    let sides = Sides::new(&reference).ok_or_else(|| empty("reference"))?;
     let faces: Vec<[DVec3; 3]> = corners(&candidate).collect();
-    let is_flipped = |face: &&[DVec3; 3]| {
-        let [a, b, c] = **face;
-        let normal = (b - a).cross(c - a);
-        let centroid = (a + b + c) / 3.0;
-        // The nearest surface itself must count, whatever is rounded.
-        let nearest = 1.000_001 * sqrt(surface.squared_distance(centroid, 0).0);
-        let squared = nearest.max(reach) * nearest.max(reach);
-        normal.dot(normal) > 0.0 && !surface.looks_along(centroid, normal, squared)
-    };
+    let is_flipped = |face: &&[DVec3; 3]| sides.is_flipped(**face);
     Ok(Folds {
         folded_edges,
         flipped_faces: faces.par_iter().filter(is_flipped).count() as u64,
     })
+}
+
+/// The surface of a mesh, and which way it looks.
+#[derive(Clone, Debug)]
+pub struct Sides {
+    surface: Proximity,
+    reach: f64,
+}
+
+impl Sides {
+    /// The sides of `reference`, in its units, which should be those of a [frame](crate::num::Frame); `None` without
+    /// triangles. O(n log n).
+    #[must_use]
+    pub fn new(reference: &Mesh) -> Option<Self> {
+        let (low, high) = reference.bounds()?;
+        Some(Self {
+            surface: Proximity::new(corners(reference).collect())?,
+            reach: REACH * length(high - low),
+        })
+    }
+
+    /// The surface.
+    #[must_use]
+    pub fn surface(&self) -> &Proximity {
+        &self.surface
+    }
+
+    /// True where all of the surface around a face looks the other way. Faces without area have no side.
+    #[must_use]
+    pub fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let normal = (b - a).cross(c - a);
+        let centroid = ((a + b) + c) / 3.0;
+        let looks_along = |reach: f64| self.surface.looks_along(centroid, normal, reach * reach);
+        if normal.dot(normal) <= 0.0 || looks_along(self.reach) {
+            return false;
+        }
+        // The nearest surface itself must count, whatever is rounded.
+        let nearest = 1.000_001 * sqrt(self.surface.squared_distance(centroid, 0).0);
+        nearest <= self.reach || !looks_along(nearest)
+    }
 }
 
 fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {

@@ -17,4 +17,5 @@ mod triangle;
 
 pub use triangle::closest_point;
 
+pub use folds::Sides;
 pub use proximity::Proximity;

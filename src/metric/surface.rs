@@ -150,7 +150,7 @@ pub fn surface_distance(
     })
 }
 
-fn empty(which: &str) -> Error {
+pub(super) fn empty(which: &str) -> Error {
     Error::input(
         "-",
         format!("the {which} mesh has no triangles; expected at least one to measure distances to"),

@@ -16,6 +16,7 @@ use crate::{
         Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
     },
     mesh::Mesh,
+    metric::Sides,
     raster::{BucketEngine, LayerEngine, Scene, Unrender},
     view::{ViewsName, frame_of},
     visibility::{self, Visibility},
@@ -231,9 +232,10 @@ impl<'a> Run<'a> {
                 let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
                 Some(Pictures::<E>::new(&scene, live, &set))
             };
-            let points = |t: &[u32; 3]| t.map(|v| original.positions()[v as usize]);
-            let surface = original.triangles().iter().map(points).collect();
-            let deviation = Deviation::new(surface, &self.live, own.polish.deviation_weight);
+            let sides = Sides::new(&original);
+            let surface = sides.as_ref().map(Sides::surface);
+            let weight = own.polish.deviation_weight;
+            let deviation = surface.and_then(|s| Deviation::new(s, &self.live, weight));
             let counters;
             (pictures, counters) = image::polish(
                 &mut self.live,
@@ -242,6 +244,7 @@ impl<'a> Run<'a> {
                 Limits {
                     rules: self.options.rules,
                     deviation: deviation.as_ref(),
+                    sides: sides.as_ref(),
                 },
                 &mut fresh,
                 &mut self.recorder,

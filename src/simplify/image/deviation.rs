@@ -14,21 +14,21 @@ use crate::{
 
 /// The original surface, and how far the whole mesh was from it.
 #[derive(Debug)]
-pub struct Deviation {
-    original: Proximity,
+pub struct Deviation<'a> {
+    original: &'a Proximity,
     total: f64,
     weight: f64,
 }
 
-impl Deviation {
-    /// `original` in the frame of `live`; `None` without triangles or without weight. O(n log n).
+impl<'a> Deviation<'a> {
+    /// `original` in the frame of `live`; `None` without weight. O(n log n).
     #[must_use]
-    pub fn new(original: Vec<[DVec3; 3]>, live: &LiveMesh, weight: f64) -> Option<Self> {
+    pub fn new(original: &'a Proximity, live: &LiveMesh, weight: f64) -> Option<Self> {
         if weight <= 0.0 {
             return None;
         }
         let mut deviation = Self {
-            original: Proximity::new(original)?,
+            original,
             total: 0.0,
             weight,
         };
@@ -94,8 +94,9 @@ mod tests {
         let flat = LiveMesh::new(&tent(0.0), Frame::default());
         let square: Vec<_> = (0..4).filter_map(|t| flat.points(t)).collect();
         let live = LiveMesh::new(&tent(0.125), Frame::default());
-        assert!(Deviation::new(square.clone(), &live, 0.0).is_none());
-        let deviation = Deviation::new(square, &live, 0.5).expect("a surface");
+        let square = Proximity::new(square).expect("triangles");
+        assert!(Deviation::new(&square, &live, 0.0).is_none());
+        let deviation = Deviation::new(&square, &live, 0.5).expect("a weight");
         // Of every face: a third of the height at the centroid, halves at two midpoints, none at the third.
         let area = 0.5 * 2.0 * length(DVec3::new(0.0, 1.0, 0.125));
         let expected = 4.0 * area * 0.25 * (0.125 / 3.0 + 0.0625 + 0.0625);

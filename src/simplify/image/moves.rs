@@ -64,7 +64,7 @@ impl<S> Search<S> {
         vertex: u32,
         [step, turn]: [f64; 2],
     ) -> Found {
-        let Limits { rules, deviation } = limits;
+        let rules = limits.rules;
         let mut found = Found::default();
         self.star.gather(live, vertex);
         let axes = match self.star.freedom {
@@ -89,14 +89,10 @@ impl<S> Search<S> {
             }
         }
         self.try_position(live, pictures, rules, lowest, &mut found);
-        if let (Some((to, cost)), Some(deviation)) = (found.better, deviation)
+        let sum = pictures.error().sum() as f64;
+        if let Some((to, cost)) = found.better
             && self.prepare(live, to, rules).is_some()
-            && !deviation.pays(
-                live,
-                &self.patch,
-                -cost as f64,
-                pictures.error().sum() as f64,
-            )
+            && !limits.admit(live, &self.patch, -cost as f64, sum)
         {
             found.better = None;
         }

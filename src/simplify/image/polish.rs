@@ -21,7 +21,8 @@ use super::{
 };
 use crate::{
     Progress, Result,
-    collapse::{Changes, LiveMesh, Observer, Patch, Rules, flip, unfolded},
+    collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, flip, unfolded},
+    metric::Sides,
     raster::Unrender,
 };
 
@@ -46,7 +47,26 @@ pub struct Limits<'a> {
     /// As for collapses.
     pub rules: Rules,
     /// What a change must pay for.
-    pub deviation: Option<&'a Deviation>,
+    pub deviation: Option<&'a Deviation<'a>>,
+    /// The sides of the original, which no face may turn its back on.
+    pub sides: Option<&'a Sides>,
+}
+
+impl Limits<'_> {
+    /// Whether a change that lowers the error `sum` by `gain` is within the limits that are dear to test.
+    pub(super) fn admit(&self, live: &LiveMesh, patch: &Patch, gain: f64, sum: f64) -> bool {
+        self.deviation
+            .is_none_or(|d| d.pays(live, patch, gain, sum))
+            && self.sides.is_none_or(|sides| {
+                let faces = patch.added.iter();
+                let flipped = faces
+                    .filter(|f| sides.is_flipped(patch.after(live, f)))
+                    .count();
+                // What was flipped before is no fault of the change.
+                let before = |f: &&PatchFace| sides.is_flipped(patch.before(live, f));
+                flipped == 0 || flipped <= patch.removed.iter().filter(before).count()
+            })
+    }
 }
 
 /// What the polishing did. The same for every number of threads.
@@ -307,9 +327,8 @@ impl<E: Unrender> Polisher<'_, E> {
                 let (live, pictures) = (&*polisher.live, &polisher.pictures);
                 let cost = pictures.cost(live, patch, &mut search.pictures);
                 let sum = pictures.error().sum() as f64;
-                let pays = |d: &Deviation| d.pays(live, patch, -cost as f64, sum);
-                let good = cost < 0 && polisher.limits.deviation.is_none_or(pays);
-                Some(good)
+                let limits = polisher.limits;
+                Some(cost < 0 && limits.admit(live, patch, -cost as f64, sum))
             });
             let mut committed = false;
             for (&e, good) in batch.iter().zip(outcomes) {
