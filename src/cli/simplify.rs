@@ -19,6 +19,7 @@ use crate::{
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify, simplify_guided,
+        tolerance::{Distance, ToleranceOptions},
         visibility::VisibilityOptions,
     },
     view::ViewsName,
@@ -43,6 +44,15 @@ pub(super) struct Options {
     /// Stop before the RMS luma difference over the driving views exceeds this, 0 to 255 (method image)
     #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     error_rms: Option<f64>,
+    /// Method tolerance: largest distance from the original, as a fraction of its bounding-box diagonal
+    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "error_abs")]
+    error: Option<f64>,
+    /// Method tolerance: largest distance from the original, in the units of the file
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    error_abs: Option<f64>,
+    /// Method tolerance: bound the distance from the result to the original only, not back
+    #[arg(long)]
+    one_sided: bool,
     /// What orders the collapses
     #[arg(long, value_enum, default_value_t = Method::Image)]
     method: Method,
@@ -109,8 +119,7 @@ enum Method {
     Quadric,
     /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002)
     Visibility,
-    /// Within a tolerance volume (not built yet)
-    #[value(hide = true)]
+    /// Within a distance of the original, guaranteed (Cox & Chibelushi 2005)
     Tolerance,
     /// Within an angle for a view cell (not built yet)
     #[value(hide = true)]
@@ -205,10 +214,10 @@ impl Options {
         let target = match (self.triangles, self.ratio) {
             (Some(n), _) => Amount::Triangles(n),
             (None, Some(r)) => Amount::Ratio(r),
-            (None, None) if self.error_rms.is_some() => Amount::ErrorOnly,
+            (None, None) if self.error_rms.is_some() || self.distance().is_some() => Amount::ErrorOnly,
             (None, None) => {
                 return Err(Error::Usage(
-                    "no target; give --triangles N, --ratio R or --error-rms LEVELS".into(),
+                    "no target; give --triangles N, --ratio R, --error-rms LEVELS or --error E".into(),
                 ));
             }
         };
@@ -226,9 +235,10 @@ impl Options {
                 quadric: self.quadric(),
                 ..self.guidance.options()
             }),
-            Method::Tolerance | Method::ViewBounded => {
+            Method::Tolerance => MethodOptions::Tolerance(self.tolerance()?),
+            Method::ViewBounded => {
                 return Err(Error::Unsupported(format!(
-                    "the method `{}` is not built yet; use image, memoryless, quadric or visibility",
+                    "the method `{}` is not built yet; use image, memoryless, quadric, visibility or tolerance",
                     self.method
                         .to_possible_value()
                         .map_or_else(String::new, |v| v.get_name().to_string())
@@ -241,6 +251,7 @@ impl Options {
             MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
             MethodOptions::Quadric(_) => RunOptions::quadric(target),
             MethodOptions::Visibility(_) => RunOptions::visibility(target),
+            MethodOptions::Tolerance(own) => RunOptions::tolerance(own, target),
         };
         options.method = method;
         options.error_rms = self.error_rms;
@@ -258,6 +269,23 @@ impl Options {
         };
         options.check()?;
         Ok(options)
+    }
+
+    fn distance(&self) -> Option<Distance> {
+        let length = self.error_abs.map(Distance::Length);
+        self.error.map(Distance::OfDiagonal).or(length)
+    }
+
+    fn tolerance(&self) -> Result<ToleranceOptions> {
+        let Some(error) = self.distance() else {
+            return Err(Error::Usage(
+                "the method `tolerance` needs a distance; give --error E or --error-abs LENGTH".into(),
+            ));
+        };
+        Ok(ToleranceOptions {
+            one_sided: self.one_sided,
+            ..ToleranceOptions::new(error)
+        })
     }
 
     fn quadric(&self) -> QuadricOptions {
@@ -310,11 +338,19 @@ impl Options {
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
         let guidance = self.guidance.given();
+        let distance = [
+            ("--error", self.error.is_some()),
+            ("--error-abs", self.error_abs.is_some()),
+            ("--one-sided", self.one_sided),
+        ];
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance].concat(),
-            MethodOptions::Memoryless(_) => &[image.as_slice(), &quadric, &guidance].concat(),
-            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance].concat(),
-            MethodOptions::Visibility(_) => &image,
+            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &distance].concat(),
+            MethodOptions::Memoryless(_) => {
+                &[image.as_slice(), &quadric, &guidance, &distance].concat()
+            },
+            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &distance].concat(),
+            MethodOptions::Visibility(_) => &[image.as_slice(), &distance].concat(),
+            MethodOptions::Tolerance(_) => &[image.as_slice(), &quadric, &guidance].concat(),
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(Error::Usage(format!(

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions,
-    visibility::VisibilityOptions,
+    tolerance::ToleranceOptions, visibility::VisibilityOptions,
 };
 use crate::{
     Error, Result,
@@ -58,6 +58,8 @@ pub enum MethodOptions {
     Quadric(QuadricOptions),
     /// Zhang & Turk 2002.
     Visibility(VisibilityOptions),
+    /// Cox & Chibelushi 2005.
+    Tolerance(ToleranceOptions),
 }
 
 impl MethodOptions {
@@ -69,6 +71,7 @@ impl MethodOptions {
             Self::Memoryless(_) => "memoryless",
             Self::Quadric(_) => "quadric",
             Self::Visibility(_) => "visibility",
+            Self::Tolerance(_) => "tolerance",
         }
     }
 }
@@ -136,6 +139,15 @@ impl Options {
         )
     }
 
+    /// Simplification within a distance, as far as it goes but not below `target`.
+    #[must_use]
+    pub fn tolerance(own: ToleranceOptions, target: Amount) -> Self {
+        let mut options = Self::new(MethodOptions::Tolerance(own), target);
+        options.schedule = Schedule::Eager;
+        options.rules.normal_cosine = 0.05;
+        options
+    }
+
     /// Only images need a guard against folds: Gouraud shading cannot see them. For the methods that measure distances it
     /// cost 3 to 4 % of flat RMS on the dragon at 8,191 triangles, so there it is off.
     fn new(method: MethodOptions, target: Amount) -> Self {
@@ -181,6 +193,7 @@ impl Options {
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
         match (self.error_rms, &self.method) {
+            (None, MethodOptions::Tolerance(_)) => {}
             (None, _) if self.target == Amount::ErrorOnly => {
                 return Err(Error::Usage(
                     "no target; expected a number of triangles, a ratio or an error".into(),
@@ -204,6 +217,7 @@ impl Options {
                 v.measure.check()?;
                 check_quadric(&v.quadric)
             }
+            MethodOptions::Tolerance(t) => t.check(),
         }
     }
 }

@@ -8,6 +8,7 @@ use super::{
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
+    tolerance::ToleranceMethod,
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
@@ -99,6 +100,11 @@ fn in_pool(
             EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
         },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
+        MethodOptions::Tolerance(own) => {
+            let method = ToleranceMethod::new(&run.live, *own)?;
+            let before = (run.live.triangle_count(), Counters::default());
+            run.phase("tolerance", method, target, before)?.0
+        }
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
