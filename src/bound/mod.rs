@@ -5,3 +5,4 @@
 //! claims.
 
 pub mod envelope;
+pub mod tolerance;

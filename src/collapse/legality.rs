@@ -110,6 +110,12 @@ refusals! {
     Mirror => "mirror",
     /// The method itself refuses.
     Method => "method",
+    /// A new face would be too far from the faces before it.
+    LocalBound => "local-bound",
+    /// A new face would be too far from the original.
+    Strays => "strays",
+    /// A part of the original would be too far from the new mesh.
+    Uncovers => "uncovers",
 }
 
 /// How often each rule refused.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Options, image::PolishCounters};
+use super::{Options, image::PolishCounters, tolerance::Guarantee};
 use crate::{
     collapse::{Counters, History, Refusals},
     mesh::Mesh,
@@ -58,4 +58,6 @@ pub struct Outcome {
     /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at
     /// images. Never a measure of quality: the run has minimised it.
     pub error_rms: Option<f64>,
+    /// What is proved about the distance from the original; only for the method that keeps one.
+    pub guarantee: Option<Guarantee>,
 }

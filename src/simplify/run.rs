@@ -8,7 +8,7 @@ use super::{
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
-    tolerance::ToleranceMethod,
+    tolerance::{Guarantee, ToleranceMethod, ToleranceOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
@@ -100,11 +100,7 @@ fn in_pool(
             EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
         },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
-        MethodOptions::Tolerance(own) => {
-            let method = ToleranceMethod::new(&run.live, *own)?;
-            let before = (run.live.triangle_count(), Counters::default());
-            run.phase("tolerance", method, target, before)?.0
-        }
+        MethodOptions::Tolerance(own) => run.within_distance(own, target)?,
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -123,6 +119,7 @@ struct Run<'a> {
     v_mesh: Option<f64>,
     polish: Option<PolishCounters>,
     error_rms: Option<f64>,
+    guarantee: Option<Guarantee>,
     progress: &'a dyn Progress,
 }
 
@@ -138,6 +135,7 @@ impl<'a> Run<'a> {
             v_mesh: None,
             polish: None,
             error_rms: None,
+            guarantee: None,
             progress,
         }
     }
@@ -279,6 +277,23 @@ impl<'a> Run<'a> {
         Ok(self.thinned("visibility", method, target)?.0)
     }
 
+    /// Cox & Chibelushi 2005: one phase for every local bound.
+    fn within_distance(&mut self, own: &ToleranceOptions, target: Target) -> Result<End> {
+        self.progress.step("prepare", 0, 0)?;
+        let mut method = ToleranceMethod::new(&self.live, *own)?;
+        self.guarantee = Some(method.guarantee());
+        let mut end = End::TargetReached;
+        for bound in method.local_bounds() {
+            method.set_local_bound(bound);
+            let before = (self.live.triangle_count(), Counters::default());
+            (end, method) = self.phase("tolerance", method, target, before)?;
+            if end == End::TargetReached {
+                break;
+            }
+        }
+        Ok(end)
+    }
+
     fn finish(self, stop: Stop) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
@@ -295,6 +310,7 @@ impl<'a> Run<'a> {
             options: self.options,
             v_mesh: self.v_mesh,
             error_rms: self.error_rms,
+            guarantee: self.guarantee,
         })
     }
 }

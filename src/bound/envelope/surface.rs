@@ -68,7 +68,10 @@ impl Surface {
                 return false;
             };
             let facet = self.tree.facet(near);
-            if [a, b, c].iter().all(|&p| facet.distance2(p) < reach.squared) {
+            if [a, b, c]
+                .iter()
+                .all(|&p| facet.distance2(p) < reach.squared)
+            {
                 continue;
             }
             let (longest2, middle, apex) = halve(piece.corners);

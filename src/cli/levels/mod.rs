@@ -172,7 +172,9 @@ impl Options {
                     return simplify_guided(mesh, &options, &visibility, terminal);
                 }
             }
-            MethodOptions::Memoryless(_) | MethodOptions::Quadric(_) | MethodOptions::Tolerance(_) => {}
+            MethodOptions::Memoryless(_)
+            | MethodOptions::Quadric(_)
+            | MethodOptions::Tolerance(_) => {}
         }
         simplify(mesh, &options, terminal)
     }
