@@ -33,6 +33,7 @@ mod shapes;
 mod streams;
 mod tiles;
 mod unrender;
+mod verify;
 mod view;
 mod visibility;
 mod zbuffer;
