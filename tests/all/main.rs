@@ -35,6 +35,7 @@ mod tiles;
 mod unrender;
 mod verify;
 mod view;
+mod view_cell;
 mod visibility;
 mod zbuffer;
 
