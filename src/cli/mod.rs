@@ -23,6 +23,7 @@ mod simplify;
 mod source;
 mod terminal;
 mod verify;
+mod view_bound;
 mod visibility;
 
 use std::{

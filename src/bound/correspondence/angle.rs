@@ -66,7 +66,8 @@ impl AngleLimit {
                 let exact = d.cross(r);
                 let along = r.dot(s - v);
                 // This very viewpoint, and this very point.
-                if along <= 0.0 || exact.dot(exact) > self.tangent * self.tangent * (along * along) {
+                if along <= 0.0 || exact.dot(exact) > self.tangent * self.tangent * (along * along)
+                {
                     return false;
                 }
                 numerator = numerator.max(length(d.cross(centre)));
@@ -77,8 +78,14 @@ impl AngleLimit {
         let Some(g) = unit(piece.centre - middle) else {
             return false;
         };
-        let nearest = |points: &[DVec3]| points.iter().fold(f64::INFINITY, |low, p| low.min(p.dot(g)));
-        let viewer = part.iter().fold(f64::NEG_INFINITY, |high, v| high.max(v.dot(g)));
+        let nearest = |points: &[DVec3]| {
+            points
+                .iter()
+                .fold(f64::INFINITY, |low, p| low.min(p.dot(g)))
+        };
+        let viewer = part
+            .iter()
+            .fold(f64::NEG_INFINITY, |high, v| high.max(v.dot(g)));
         let (a, b) = (nearest(piece.from) - viewer, nearest(piece.to) - viewer);
         let mut across = 0.0_f64;
         for (&p, &s) in piece.from.iter().zip(piece.to) {
@@ -95,7 +102,8 @@ impl AngleLimit {
         let Some([one, other]) = halves(part) else {
             return false;
         };
-        self.holds_for(&one, piece, depth - 1, left) && self.holds_for(&other, piece, depth - 1, left)
+        self.holds_for(&one, piece, depth - 1, left)
+            && self.holds_for(&other, piece, depth - 1, left)
     }
 }
 

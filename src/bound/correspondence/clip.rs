@@ -85,9 +85,8 @@ impl Bounded {
 
     /// True where a side of either triangle has the other on its outside, with a margin.
     pub(super) fn is_apart(&self, other: &[DVec2; 3]) -> bool {
-        let outside = |side: &Side, corners: &[DVec2; 3]| {
-            corners.iter().all(|&p| side.distance(p) < -APART)
-        };
+        let outside =
+            |side: &Side, corners: &[DVec2; 3]| corners.iter().all(|&p| side.distance(p) < -APART);
         let [a, b, c] = *other;
         self.sides.iter().any(|s| outside(s, other))
             || [Side::new(a, b), Side::new(b, c), Side::new(c, a)]

@@ -67,7 +67,9 @@ impl After {
     pub(super) fn weights_at(&self, p: DVec2) -> [f64; 3] {
         let part = self.plane.weights(p);
         let of = |k: usize| {
-            part[0] * self.weights[0][k] + part[1] * self.weights[1][k] + part[2] * self.weights[2][k]
+            part[0] * self.weights[0][k]
+                + part[1] * self.weights[1][k]
+                + part[2] * self.weights[2][k]
         };
         [of(0), of(1), of(2)]
     }
@@ -181,7 +183,9 @@ impl Fan {
         } else if along >= 1.0 {
             projection.of_point(at_first)
         } else {
-            projection.of_point(at_last).lerp(projection.of_point(at_first), along)
+            projection
+                .of_point(at_last)
+                .lerp(projection.of_point(at_first), along)
         };
         let count = sectors.len();
         for (i, sector) in sectors.iter().enumerate() {
@@ -239,7 +243,11 @@ impl Fan {
 
     /// Finds what overlaps what, and that each layout fills the other exactly once.
     fn find_overlaps(&mut self) -> Option<()> {
-        let mut after: Vec<f64> = self.after.iter().map(|a| -double_area(&a.plane.corners)).collect();
+        let mut after: Vec<f64> = self
+            .after
+            .iter()
+            .map(|a| -double_area(&a.plane.corners))
+            .collect();
         let (mut polygon, mut spare) = (Vec::new(), Vec::new());
         for before in &self.before {
             let mut missing = double_area(&before.plane);
@@ -285,7 +293,10 @@ fn after(collapse: &Collapse<'_>, sector: &Sector) -> Option<Face> {
 fn in_order(sectors: &mut [Sector]) -> Option<bool> {
     let starts = |sectors: &[Sector], v: u32| sectors.iter().filter(|s| s.from() == v).count();
     let comes = |sectors: &[Sector], v: u32| sectors.iter().filter(|s| s.to() == v).count();
-    if sectors.iter().any(|s| starts(sectors, s.from()) > 1 || comes(sectors, s.to()) > 1) {
+    if sectors
+        .iter()
+        .any(|s| starts(sectors, s.from()) > 1 || comes(sectors, s.to()) > 1)
+    {
         return None;
     }
     let first = (0..sectors.len()).find(|&i| comes(sectors, sectors[i].from()) == 0);
@@ -324,7 +335,10 @@ struct Projection {
 impl Projection {
     fn of(collapse: &Collapse<'_>) -> Option<Self> {
         let mut sum = DVec3::ZERO;
-        for Face { points: [a, b, c], .. } in collapse.removed {
+        for Face {
+            points: [a, b, c], ..
+        } in collapse.removed
+        {
             sum += (*b - *a).cross(*c - *a);
         }
         let normal = unit(sum)?;

@@ -8,6 +8,7 @@
 mod angle;
 mod clip;
 mod fan;
+mod file;
 mod pieces;
 
 pub use angle::AngleLimit;

@@ -98,7 +98,11 @@ pub struct Correspondence {
 impl Correspondence {
     /// Every triangle stands for itself, under its index as the face's id; `alive` says which ones exist. O(n).
     #[must_use]
-    pub fn new(originals: Vec<[DVec3; 3]>, alive: impl Fn(u32) -> bool, allowance: &impl Allowance) -> Self {
+    pub fn new(
+        originals: Vec<[DVec3; 3]>,
+        alive: impl Fn(u32) -> bool,
+        allowance: &impl Allowance,
+    ) -> Self {
         let faces = (0..originals.len() as u32)
             .map(|t| FacePieces {
                 itself: alive(t),
@@ -109,7 +113,52 @@ impl Correspondence {
         Self { originals, faces }
     }
 
-    /// Number of original triangles; also of face ids.
+    /// The triangles of a mesh, each standing for itself. O(n).
+    #[must_use]
+    pub fn identity(originals: Vec<[DVec3; 3]>) -> Self {
+        let itself = FacePieces {
+            itself: true,
+            ..FacePieces::default()
+        };
+        Self {
+            faces: vec![itself; originals.len()],
+            originals,
+        }
+    }
+
+    /// The same map with the faces `ids[0]`, `ids[1]`, ... as faces 0, 1, ..., and lengths in other units.
+    #[must_use]
+    pub fn renumbered(
+        mut self,
+        ids: &[u32],
+        units: impl Fn(DVec3) -> DVec3,
+        length: impl Fn(f64) -> f64,
+    ) -> Self {
+        let faces = ids.iter().map(|&id| {
+            let mut pieces = std::mem::take(&mut self.faces[id as usize]);
+            if pieces.itself && pieces.heads.is_empty() {
+                pieces.itself = false;
+                pieces.heads = vec![(id, 3)];
+                pieces.corners = ITSELF.to_vec();
+            }
+            pieces.displacement = length(pieces.displacement);
+            pieces.radius = length(pieces.radius);
+            pieces
+        });
+        let faces = faces.collect();
+        Self {
+            originals: self.originals.iter().map(|t| t.map(&units)).collect(),
+            faces,
+        }
+    }
+
+    /// Number of face ids.
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Number of original triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.originals.len()
@@ -178,7 +227,10 @@ impl Correspondence {
             let after = &fan.after[j as usize];
             scratch.polygon.clear();
             for (plane, source) in before.plane.iter().zip(ITSELF.map(|c| c.source)) {
-                scratch.polygon.push(PlaneCorner { plane: *plane, source });
+                scratch.polygon.push(PlaneCorner {
+                    plane: *plane,
+                    source,
+                });
             }
             if clip(&mut scratch.polygon, &mut scratch.spare, &after.plane) {
                 for corner in &scratch.polygon {
@@ -250,7 +302,9 @@ impl Correspondence {
             let [_, u, v] = after.weights_at(corner.plane);
             scratch.target.push([u, v]);
             scratch.to.push(at(after.face.points, [u, v]));
-            scratch.from.push(at(self.original(triangle), corner.source));
+            scratch
+                .from
+                .push(at(self.original(triangle), corner.source));
         }
     }
 
