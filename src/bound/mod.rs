@@ -4,5 +4,8 @@
 //! Chibelushi 2005 keep a collapse inside a tolerance volume. A verifier that shares no code with either checks their
 //! claims.
 
+pub mod cell;
+pub mod correspondence;
 pub mod envelope;
 pub mod tolerance;
+pub mod verify;

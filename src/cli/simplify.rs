@@ -5,22 +5,24 @@ use std::{io::Write, path::PathBuf};
 use clap::{ArgGroup, ValueEnum};
 use serde::Serialize;
 
-use super::{Common, Verdict, guidance::Guidance, report, source, terminal::Terminal};
+use super::{
+    Common, Verdict, account, guidance::Guidance, report, source, terminal::Terminal,
+    view_bound::ViewBound, within_distance::WithinDistance,
+};
 use crate::{
     Error, Result,
-    bound::tolerance::Source,
     collapse::{Schedule, Topology},
     io,
     mesh::{self, content_sha256},
     simplify::{
-        Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
+        Amount, MethodOptions, Options as RunOptions, Stop,
         image::{
             DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start,
         },
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify, simplify_guided,
-        tolerance::{Distance, Guarantee, ToleranceOptions},
+        tolerance::Guarantee,
         visibility::VisibilityOptions,
     },
     view::ViewsName,
@@ -45,27 +47,6 @@ pub(super) struct Options {
     /// Stop before the RMS luma difference over the driving views exceeds this, 0 to 255 (method image)
     #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     error_rms: Option<f64>,
-    /// Method tolerance: largest distance from the original, as a fraction of its bounding-box diagonal
-    #[arg(
-        long,
-        value_name = "E",
-        allow_negative_numbers = true,
-        conflicts_with = "error_abs"
-    )]
-    error: Option<f64>,
-    /// Method tolerance: largest distance from the original, in the units of the file
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    error_abs: Option<f64>,
-    /// Method tolerance: bound the distance from the result to the original only, not back
-    #[arg(long)]
-    one_sided: bool,
-    /// Method tolerance: where other places are refused, try the best one in the tolerance volume; slow, a few percent
-    /// fewer triangles
-    #[arg(long, value_enum)]
-    volume: Option<VolumeName>,
-    /// Method tolerance: a local bound that grows, as published; slow
-    #[arg(long)]
-    growing: bool,
     /// What orders the collapses
     #[arg(long, value_enum, default_value_t = Method::Image)]
     method: Method,
@@ -110,6 +91,10 @@ pub(super) struct Options {
     probabilistic: bool,
     #[command(flatten)]
     guidance: Guidance,
+    #[command(flatten)]
+    view_bound: ViewBound,
+    #[command(flatten)]
+    within: WithinDistance,
     /// Write the history of collapses, moves and flips, for `lodmark replay`
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -132,20 +117,10 @@ enum Method {
     Quadric,
     /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002)
     Visibility,
-    /// Within a distance of the original, guaranteed (Cox & Chibelushi 2005)
+    /// Within a distance of the input, guaranteed (after Cox & Chibelushi 2005)
     Tolerance,
-    /// Within an angle for a view cell (not built yet)
-    #[value(hide = true)]
+    /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007)
     ViewBounded,
-}
-
-/// [`Source`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum VolumeName {
-    /// No new face pierces a cap
-    Edges,
-    /// As published: partition sets from vertices
-    Vertices,
 }
 
 /// [`Preset`] by name.
@@ -239,12 +214,17 @@ impl Options {
         let target = match (self.triangles, self.ratio) {
             (Some(n), _) => Amount::Triangles(n),
             (None, Some(r)) => Amount::Ratio(r),
-            (None, None) if self.error_rms.is_some() || self.distance().is_some() => {
+            (None, None)
+                if self.error_rms.is_some()
+                    || self.view_bound.has_error()
+                    || self.within.has_error() =>
+            {
                 Amount::ErrorOnly
             }
             (None, None) => {
                 return Err(Error::Usage(
-                    "no target; give --triangles N, --ratio R, --error-rms LEVELS or --error E"
+                    "no target; give --triangles N, --ratio R or an error that the method honours: --error-rms LEVELS, \
+                     --error E, --error-abs LENGTH, --error-deg DEGREES or --error-px PIXELS"
                         .into(),
                 ));
             }
@@ -263,15 +243,8 @@ impl Options {
                 quadric: self.quadric(),
                 ..self.guidance.options()
             }),
-            Method::Tolerance => MethodOptions::Tolerance(self.tolerance()?),
-            Method::ViewBounded => {
-                return Err(Error::Unsupported(format!(
-                    "the method `{}` is not built yet; use image, memoryless, quadric, visibility or tolerance",
-                    self.method
-                        .to_possible_value()
-                        .map_or_else(String::new, |v| v.get_name().to_string())
-                )));
-            }
+            Method::ViewBounded => MethodOptions::ViewBounded(self.view_bound.options()?),
+            Method::Tolerance => MethodOptions::Tolerance(self.within.options()?),
         };
         self.refuse_foreign(&method)?;
         let mut options = match method {
@@ -280,6 +253,7 @@ impl Options {
             MethodOptions::Quadric(_) => RunOptions::quadric(target),
             MethodOptions::Visibility(_) => RunOptions::visibility(target),
             MethodOptions::Tolerance(own) => RunOptions::tolerance(own, target),
+            MethodOptions::ViewBounded(ref own) => RunOptions::view_bounded(own.clone(), target),
         };
         options.method = method;
         options.error_rms = self.error_rms;
@@ -297,29 +271,6 @@ impl Options {
         };
         options.check()?;
         Ok(options)
-    }
-
-    fn distance(&self) -> Option<Distance> {
-        let length = self.error_abs.map(Distance::Length);
-        self.error.map(Distance::OfDiagonal).or(length)
-    }
-
-    fn tolerance(&self) -> Result<ToleranceOptions> {
-        let Some(error) = self.distance() else {
-            return Err(Error::Usage(
-                "the method `tolerance` needs a distance; give --error E or --error-abs LENGTH"
-                    .into(),
-            ));
-        };
-        Ok(ToleranceOptions {
-            one_sided: self.one_sided,
-            volume: self.volume.map(|name| match name {
-                VolumeName::Edges => Source::Edges,
-                VolumeName::Vertices => Source::Vertices,
-            }),
-            growing: self.growing,
-            ..ToleranceOptions::new(error)
-        })
     }
 
     fn quadric(&self) -> QuadricOptions {
@@ -372,21 +323,21 @@ impl Options {
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
         let guidance = self.guidance.given();
-        let distance = [
-            ("--error", self.error.is_some()),
-            ("--error-abs", self.error_abs.is_some()),
-            ("--one-sided", self.one_sided),
-            ("--volume", self.volume.is_some()),
-            ("--growing", self.growing),
-        ];
+        let bound = self.view_bound.given();
+        let distance = self.within.given();
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &distance].concat(),
+            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &bound, &distance].concat(),
             MethodOptions::Memoryless(_) => {
+                &[image.as_slice(), &quadric, &guidance, &bound, &distance].concat()
+            }
+            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &bound, &distance].concat(),
+            MethodOptions::Visibility(_) => &[image.as_slice(), &bound, &distance].concat(),
+            MethodOptions::Tolerance(_) => {
+                &[image.as_slice(), &quadric, &guidance, &bound].concat()
+            }
+            MethodOptions::ViewBounded(_) => {
                 &[image.as_slice(), &quadric, &guidance, &distance].concat()
             }
-            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &distance].concat(),
-            MethodOptions::Visibility(_) => &[image.as_slice(), &distance].concat(),
-            MethodOptions::Tolerance(_) => &[image.as_slice(), &quadric, &guidance].concat(),
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(Error::Usage(format!(
@@ -422,6 +373,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let outputs = [
         Some(&options.output),
         options.history.as_ref(),
+        options.view_bound.output(),
         common.json.as_ref(),
     ];
     source::require_outputs(outputs.into_iter().flatten())?;
@@ -441,11 +393,13 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
         None => simplify(&canonical.mesh, &resolved, terminal)?,
     };
-    tell(options, triangles_in, &outcome, terminal);
-    // Where a distance is all that was asked for, nothing was missed.
-    let all = outcome.guarantee.is_some() && resolved.target == Amount::ErrorOnly;
-    let reached = matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
-    if options.strict && !reached && !all {
+    account::tell(&options.input, triangles_in, &outcome, terminal);
+    let bounded = matches!(
+        outcome.options.method,
+        MethodOptions::ViewBounded(_) | MethodOptions::Tolerance(_)
+    ) && outcome.options.target == Amount::ErrorOnly;
+    let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
+    if options.strict && short && !bounded {
         return Err(Error::TargetNotReached(format!(
             "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
             outcome.mesh.triangles().len()
@@ -458,6 +412,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         let bytes = outcome.history.to_bytes();
         io::atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
     }
+    options.view_bound.write(&canonical.mesh, &outcome)?;
     let summary = Summary {
         input: &options.input,
         output: &options.output,
@@ -482,75 +437,4 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         summary.vertices_out
     );
     Ok(Verdict::Good)
-}
-
-/// Says how it ended, in particular where that is short of the target.
-fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
-    for phase in &outcome.phases {
-        let c = &phase.counters;
-        terminal.say(&format!(
-            "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
-            phase.method,
-            phase.triangles_in,
-            phase.triangles_out,
-            c.collapses,
-            c.evaluations,
-            c.evaluations_if_eager
-        ));
-        if !c.ranks.is_empty() {
-            let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
-            terminal.say(&format!(
-                "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
-                phase.method,
-                100.0 * mean,
-                c.ranks.len()
-            ));
-        }
-    }
-    if let Some(v) = outcome.v_mesh {
-        terminal.say(&format!("visibility of the input: {v:.4}"));
-    }
-    if let Some(polish) = &outcome.polish {
-        terminal.say(&format!(
-            "polish: {} moves, {} flips; {} evaluations",
-            polish.moves, polish.flips, polish.evaluations
-        ));
-        for (i, [before, after]) in polish.cameras.iter().enumerate() {
-            let before_that = if i == 0 {
-                ""
-            } else {
-                ", which had driven nothing"
-            };
-            terminal.say(&format!(
-                "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
-                i + 1
-            ));
-        }
-    }
-    if let Some(rms) = outcome.error_rms {
-        terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
-    }
-    if let Some(g) = outcome.guarantee {
-        terminal.say(&format!(
-            "guaranteed: no point of the result is farther than {:.6e} from the input{}",
-            g.distance,
-            if g.two_sided { ", nor back" } else { "" }
-        ));
-    }
-    match &outcome.stop {
-        Stop::TargetReached => {}
-        Stop::TargetAboveInput => terminal.say(&format!(
-            "{}: already has {triangles_in} triangles; the result is a copy",
-            options.input.display()
-        )),
-        Stop::ErrorLimit => terminal.say("stopped at the error limit"),
-        Stop::NoLegalCollapse { refusals } if outcome.guarantee.is_some() => terminal.say(&format!(
-            "stopped with {} triangles: no edge may be collapsed any more within the distance ({refusals})",
-            outcome.mesh.triangles().len()
-        )),
-        Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
-            "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
-            outcome.mesh.triangles().len()
-        )),
-    }
 }

@@ -116,6 +116,10 @@ refusals! {
     Strays => "strays",
     /// A part of the original would be too far from the new mesh.
     Uncovers => "uncovers",
+    /// The faces before cannot be mapped onto the faces after: no disc, or folded.
+    Unmapped => "unmapped",
+    /// A point would be farther from what stands for it than is allowed.
+    Bound => "bound",
 }
 
 /// How often each rule refused.

@@ -9,10 +9,12 @@ use super::{
     memoryless::Memoryless,
     quadric::QuadricMethod,
     tolerance::{Guarantee, ToleranceMethod, ToleranceOptions},
+    view_bounded::{ViewBounded, ViewBoundedOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
     Error, Progress, Result,
+    bound::correspondence::Correspondence,
     collapse::{
         Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
     },
@@ -83,6 +85,10 @@ fn in_pool(
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {
+        if matches!(options.method, MethodOptions::ViewBounded(_)) {
+            let all = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+            run.correspondence = Some(Correspondence::identity(all.collect()));
+        }
         return run.finish(Stop::TargetAboveInput);
     }
     let target = Target { triangles };
@@ -101,6 +107,7 @@ fn in_pool(
         },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
         MethodOptions::Tolerance(own) => run.within_distance(own, target)?,
+        MethodOptions::ViewBounded(own) => run.view_bounded(own, target)?,
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -120,6 +127,7 @@ struct Run<'a> {
     polish: Option<PolishCounters>,
     error_rms: Option<f64>,
     guarantee: Option<Guarantee>,
+    correspondence: Option<Correspondence>,
     progress: &'a dyn Progress,
 }
 
@@ -136,6 +144,7 @@ impl<'a> Run<'a> {
             polish: None,
             error_rms: None,
             guarantee: None,
+            correspondence: None,
             progress,
         }
     }
@@ -294,6 +303,15 @@ impl<'a> Run<'a> {
         Ok(end)
     }
 
+    /// Eisemann & Décoret 2007: within an angle for all viewers in a cell.
+    fn view_bounded(&mut self, own: &ViewBoundedOptions, target: Target) -> Result<End> {
+        let method = ViewBounded::new(&self.live, own, self.progress)?;
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("view-bounded", method, target, before)?;
+        self.correspondence = Some(method.into_correspondence(&self.live)?);
+        Ok(end)
+    }
+
     fn finish(self, stop: Stop) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
@@ -311,6 +329,7 @@ impl<'a> Run<'a> {
             v_mesh: self.v_mesh,
             error_rms: self.error_rms,
             guarantee: self.guarantee,
+            correspondence: self.correspondence,
         })
     }
 }

@@ -8,9 +8,8 @@
 
 use glam::DVec3;
 
-use super::{HalfSpace, Neighborhood};
-use crate::bound::envelope::Facet;
-use crate::num::math;
+use super::{HalfSpace, Neighborhood, Prism};
+use crate::{bound::envelope::Facet, num::math};
 
 /// A polygon that is cut; three corners and one more for every cut.
 #[derive(Clone, Copy)]
@@ -63,6 +62,21 @@ impl Polygon {
     }
 }
 
+impl Prism {
+    /// The largest height, up or down, of the part of a triangle that is in the column; 0 where there is none.
+    #[must_use]
+    pub fn largest_height(&self, triangle: [DVec3; 3]) -> f64 {
+        self.height_of(Polygon::triangle(triangle))
+    }
+
+    fn height_of(&self, whole: Polygon) -> f64 {
+        let walls = self.walls.iter();
+        let inside = walls.fold(whole, |piece, &wall| piece.split(wall)[0]);
+        let heights = inside.corners().iter().map(|&p| self.height(p).abs());
+        heights.fold(0.0, f64::max)
+    }
+}
+
 impl Neighborhood {
     /// An upper bound of the distance from every point of the new triangles with the apex `v` (relative to the origin) to
     /// the old ones.
@@ -85,11 +99,7 @@ impl Neighborhood {
         for &[p, q] in self.links() {
             let whole = Polygon::triangle([v, p, q]);
             for prism in self.prisms() {
-                let walls = prism.walls.iter();
-                let inside = walls.fold(whole, |piece, &wall| piece.split(wall)[0]);
-                for &corner in inside.corners() {
-                    most = most.max(prism.height(corner).abs());
-                }
+                most = most.max(prism.height_of(whole));
                 if most > enough {
                     return most;
                 }

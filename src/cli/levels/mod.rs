@@ -174,7 +174,8 @@ impl Options {
             }
             MethodOptions::Memoryless(_)
             | MethodOptions::Quadric(_)
-            | MethodOptions::Tolerance(_) => {}
+            | MethodOptions::Tolerance(_)
+            | MethodOptions::ViewBounded(_) => {}
         }
         simplify(mesh, &options, terminal)
     }

@@ -16,8 +16,8 @@ use crate::{
     num::math,
 };
 
-/// First local bound, as a share of the bound.
-const FIRST: f64 = 1.0 / 32.0;
+/// How often the local bound doubles until it is the bound, in two steps each time: it starts at 1/32 of it.
+const DOUBLINGS: u32 = 5;
 /// Half-space tests of volumes: a share of the diagonal.
 const TOLERANCE: f64 = 1e-9;
 /// Bounds beyond so many diagonals mean the same.
@@ -108,11 +108,12 @@ impl ToleranceMethod {
     pub fn local_bounds(&self) -> Vec<f64> {
         let mut bounds = Vec::new();
         if self.options.growing {
-            let mut bound = FIRST * self.reach.length;
-            while bound <= self.reach.length {
-                bounds.push(bound);
-                bound *= std::f64::consts::SQRT_2;
+            let own = self.reach.length;
+            for doublings in 0..DOUBLINGS {
+                let bound = own / f64::from(1_u32 << (DOUBLINGS - doublings));
+                bounds.extend([bound, bound * std::f64::consts::SQRT_2]);
             }
+            bounds.push(own);
         }
         bounds.push(f64::INFINITY);
         bounds
