@@ -274,9 +274,9 @@ fn a_volume_holds_the_positions_that_are_allowed_and_no_others() {
     let mut random = Random(0x7011);
     let (mut inside, mut outside) = (0_u64, 0_u64);
     for _ in 0..cases() / 10 {
-        let bump = 0.1 + 0.8 * random.unit();
+        let bump = 0.1 + 0.4 * random.unit();
         let (_, faces) = ring(&mut random, bump);
-        let bound = 0.03 + 0.3 * random.unit();
+        let bound = 0.05 + 0.3 * random.unit();
         let around = neighborhood(&faces).expect("no needles");
         let volume = Volume::new(&around, bound, Source::Edges, 1e-9);
         if volume.cells().is_empty() {

@@ -117,10 +117,19 @@ impl Cell {
         (sides.len() >= 4).then_some(Self { sides })
     }
 
-    /// What is left of it outside the intersection of half-spaces: disjoint cells.
-    pub fn outside(&self, of: &[HalfSpace], tolerance: f64, least: f64, into: &mut Vec<Self>) {
+    /// Puts what is left of it outside the intersection of half-spaces into `into`: disjoint cells, or itself where there is
+    /// nothing of it inside. Parts of no more volume than `least` are dropped.
+    pub fn outside(self, of: &[HalfSpace], tolerance: f64, least: f64, into: &mut Vec<Self>) {
+        let start = into.len();
         let mut rest = self.clone();
-        for bound in of {
+        // What is cut off first stays in one piece: the larger, the fewer cells in the end.
+        let mut order: Vec<(f64, HalfSpace)> = of
+            .iter()
+            .map(|b| (self.corners().map(|p| b.excess(p)).fold(0.0, f64::max), *b))
+            .filter(|(depth, _)| *depth > tolerance)
+            .collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, bound) in &order {
             if let Some(part) = rest.cut(bound.complement(), tolerance)
                 && part.volume() > least
             {
@@ -128,7 +137,11 @@ impl Cell {
             }
             match rest.cut(*bound, tolerance) {
                 Some(inside) => rest = inside,
-                None => return,
+                None => {
+                    into.truncate(start);
+                    into.push(self);
+                    return;
+                }
             }
         }
     }

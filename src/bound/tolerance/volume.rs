@@ -9,7 +9,7 @@ use super::{Cell, Neighborhood, Quadratic, shadows};
 pub const CELLS: usize = 256;
 
 /// Volume below which a cell is dropped, in cubes of the bound.
-const LEAST: f64 = 1e-9;
+const LEAST: f64 = 1e-6;
 
 /// From where caps cast their shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
