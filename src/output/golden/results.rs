@@ -3,6 +3,7 @@
 use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
     Error, Result, Silent,
+    bound::tolerance::Source,
     mesh::{Materials, Mesh, MeshParts, canonical, generate},
     metric::{
         luma::ViewErrors,
@@ -19,6 +20,7 @@ use crate::{
         image::{DrivingShading, ImageOptions, Polish, Preset, Start},
         quadric::QuadricOptions,
         simplify,
+        tolerance::{Distance, ToleranceOptions},
     },
     view::{self, Interpolation, Projection, Shading, Specular, ViewSet, ViewsName, frame_of},
 };
@@ -146,7 +148,40 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     limited.error_rms = Some(4.0);
     let outcome = simplify(&torus(), &limited, &Silent)?;
     outcome_items(collector, "torus/image-error-rms", &outcome);
+    bounded(collector)?;
     side_by_side(collector)
+}
+
+/// Within a distance: with everything that the method can do.
+fn bounded(collector: &mut Collector) -> Result<()> {
+    let within = ToleranceOptions::new(Distance::OfDiagonal(0.02));
+    let one_sided = ToleranceOptions {
+        one_sided: true,
+        volume: Some(Source::Vertices),
+        ..within
+    };
+    let growing = ToleranceOptions {
+        volume: Some(Source::Edges),
+        growing: true,
+        ..within
+    };
+    let torus = generate::torus(1.0, 0.4, 24, 12);
+    for (name, mesh, own) in [
+        ("torus/tolerance", &torus, within),
+        ("torus/tolerance-one-sided", &torus, one_sided),
+        ("torus/tolerance-growing", &torus, growing),
+        ("terrain/tolerance", &terrain(), within),
+        (
+            "textured-torus/tolerance",
+            &generate::textured_torus(24, 12),
+            within,
+        ),
+    ] {
+        let options = Options::tolerance(own, Amount::ErrorOnly);
+        let outcome = simplify(mesh, &options, &Silent)?;
+        outcome_items(collector, name, &outcome);
+    }
+    Ok(())
 }
 
 /// The picture of the README: a model, and what images and geometry leave of it.

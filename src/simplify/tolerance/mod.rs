@@ -8,7 +8,8 @@
 //! Deviations: positions are tried in the order optimum of Lindstrom & Turk, then ends and midpoint of the edge by cost;
 //! the tolerance volume proposes one more where those are refused ([`ToleranceOptions::volume`]), and the growing local
 //! bound is an option ([`ToleranceOptions::growing`]): on the bunny at 0.5 % of the diagonal the certificate alone leaves 627
-//! triangles, after a growing bound 650, in a multiple of the time. Collapses are ordered by the memoryless cost, in
+//! triangles in 4.2 s of processor time, after a growing bound 639 in 18.5 s, with rigorous volumes 617 in 6.3 s, with
+//! published ones 603 in 7.6 s. Collapses are ordered by the memoryless cost, in
 //! frame units. Limits: as those of the certificate; positions have the file's precision before they are tested.
 
 mod method;
