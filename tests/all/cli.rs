@@ -248,7 +248,7 @@ fn what_is_planned_but_not_built_ends_with_4() {
         "-t",
         "5",
         "--method",
-        "view-bounded",
+        "tolerance",
     ];
     for words in [&["bound", "a", "b"][..], &method, &gltf] {
         let said = expect(&dir, 4, words);
