@@ -3,10 +3,11 @@
 //! Little-endian: magic `LODMCORR`, format version (u32, 1), SHA-256 of the original and of the simplified surface, number
 //! of triangles of both (u32 each), number of pieces (u64); then for every original triangle, in order, the number of its
 //! pieces (u32) and the pieces: triangle of the simplified mesh (u32), number of corners (u32, at least 3), and per corner
-//! four doubles: the weights of the second and third corner of the original triangle, and of the simplified one. At the
-//! end the SHA-256 of all that. The digest of a surface is that of the coordinates of all corners of its triangles, in
-//! order, as doubles: the same for a mesh and any file of it. The original is the mesh in canonical order, as `simplify`
-//! works on it; the simplified one has the order of its file.
+//! four u32 in units of 2^-31: the weights of the second and third corner of the original triangle, and of the simplified
+//! one. At the end is the SHA-256 of all that. A piece is mapped linearly on the triangles from its first corner. The
+//! digest of a surface is that of the coordinates of all corners of its triangles, in order, as doubles: the same for a
+//! mesh and any file of it. The original is the mesh in canonical order, as `simplify` works on it; the simplified one has
+//! the order of its file.
 
 use std::io::{Result, Write};
 
@@ -48,7 +49,8 @@ impl Correspondence {
                 bytes.extend(face.to_le_bytes());
                 bytes.extend((piece.corners.len() as u32).to_le_bytes());
                 for corner in piece.corners {
-                    for weight in corner.source.into_iter().chain(corner.target) {
+                    let weights = [corner.source.bits(), corner.target.bits()];
+                    for weight in weights.into_iter().flatten() {
                         bytes.extend(weight.to_le_bytes());
                     }
                 }

@@ -5,23 +5,23 @@
 //! convex function on a piece, so it is largest at a corner: nothing is added up over collapses, and a surface that
 //! returns to where it was is as good as one that never moved. The notes (4.9) propose a number per face that adds up the
 //! steps instead; here that only accepts quickly what is far from the limit.
-//! Memory: 32 bytes per corner of a piece; measured figures are with the method that uses it.
+//! Weights are kept in units of 2^-31, and judged as kept. Memory: 16 bytes per corner of a piece.
 
 use glam::DVec3;
 
 use super::{
-    clip::{Corner as PlaneCorner, clip},
+    clip::{Corner as PlaneCorner, Place, clip, place},
     fan::{After, Fan},
 };
-use crate::num::math::sqrt;
+use crate::num::{fixed::Weights31, math::sqrt};
 
 /// A corner of a piece: weights of the second and third corner of the original triangle, and of the live face.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Corner {
     /// In the original triangle.
-    pub source: [f64; 2],
+    pub source: Weights31,
     /// In the live face.
-    pub target: [f64; 2],
+    pub target: Weights31,
 }
 
 /// A part of an original triangle and the part of a live face that stands for it.
@@ -68,22 +68,24 @@ impl FacePieces {
     }
 }
 
-/// The only piece of a face that never changed.
-const ITSELF: [Corner; 3] = [both([0.0, 0.0]), both([1.0, 0.0]), both([0.0, 1.0])];
+/// The corners of a face as weights.
+const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-const fn both(weights: [f64; 2]) -> Corner {
-    Corner {
-        source: weights,
-        target: weights,
-    }
+/// The only piece of a face that never changed.
+fn itself() -> [Corner; 3] {
+    CORNERS.map(|weights| Corner {
+        source: Weights31::new(weights),
+        target: Weights31::new(weights),
+    })
 }
 
 /// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    whole: Vec<PlaneCorner>,
     polygon: Vec<PlaneCorner>,
     spare: Vec<PlaneCorner>,
-    target: Vec<[f64; 2]>,
+    corners: Vec<Corner>,
     from: Vec<DVec3>,
     to: Vec<DVec3>,
 }
@@ -93,6 +95,8 @@ pub struct Scratch {
 pub struct Correspondence {
     originals: Vec<[DVec3; 3]>,
     faces: Vec<FacePieces>,
+    /// The corners of every piece that is a whole face.
+    itself: [Corner; 3],
 }
 
 impl Correspondence {
@@ -110,19 +114,24 @@ impl Correspondence {
                 ..FacePieces::default()
             })
             .collect();
-        Self { originals, faces }
+        Self {
+            originals,
+            faces,
+            itself: itself(),
+        }
     }
 
     /// The triangles of a mesh, each standing for itself. O(n).
     #[must_use]
     pub fn identity(originals: Vec<[DVec3; 3]>) -> Self {
-        let itself = FacePieces {
+        let whole = FacePieces {
             itself: true,
             ..FacePieces::default()
         };
         Self {
-            faces: vec![itself; originals.len()],
+            faces: vec![whole; originals.len()],
             originals,
+            itself: itself(),
         }
     }
 
@@ -139,7 +148,7 @@ impl Correspondence {
             if pieces.itself && pieces.heads.is_empty() {
                 pieces.itself = false;
                 pieces.heads = vec![(id, 3)];
-                pieces.corners = ITSELF.to_vec();
+                pieces.corners = itself().to_vec();
             }
             pieces.displacement = length(pieces.displacement);
             pieces.radius = length(pieces.radius);
@@ -149,6 +158,7 @@ impl Correspondence {
         Self {
             originals: self.originals.iter().map(|t| t.map(&units)).collect(),
             faces,
+            itself: self.itself,
         }
     }
 
@@ -191,7 +201,7 @@ impl Correspondence {
         let pieces = &self.faces[face as usize];
         let itself = pieces.itself.then_some(Piece {
             triangle: face,
-            corners: &ITSELF,
+            corners: &self.itself,
         });
         itself.into_iter().chain(pieces.iter())
     }
@@ -226,7 +236,7 @@ impl Correspondence {
         for &j in &fan.overlaps[i] {
             let after = &fan.after[j as usize];
             scratch.polygon.clear();
-            for (plane, source) in before.plane.iter().zip(ITSELF.map(|c| c.source)) {
+            for (plane, source) in before.plane.iter().zip(CORNERS) {
                 scratch.polygon.push(PlaneCorner {
                     plane: *plane,
                     source,
@@ -254,32 +264,42 @@ impl Correspondence {
     ) -> bool {
         let before = &fan.before[i];
         let [a, b, c] = before.plane;
+        let within = |[u, v]: [f64; 2]| a + (b - a) * u + (c - a) * v;
         for piece in self.pieces(before.face.id) {
             let mut parts = 0;
-            let load = |polygon: &mut Vec<PlaneCorner>| {
-                polygon.clear();
-                polygon.extend(piece.corners.iter().map(|corner| PlaneCorner {
-                    plane: a + (b - a) * corner.target[0] + (c - a) * corner.target[1],
-                    source: corner.source,
+            scratch.whole.clear();
+            scratch
+                .whole
+                .extend(piece.corners.iter().map(|corner| PlaneCorner {
+                    plane: within(corner.target.get()),
+                    source: corner.source.get(),
                 }));
-            };
             for &j in &fan.overlaps[i] {
                 let after = &fan.after[j as usize];
-                load(&mut scratch.polygon);
-                if clip(&mut scratch.polygon, &mut scratch.spare, &after.plane) {
+                let place = place(&scratch.whole, &after.plane);
+                if place == Place::Outside {
+                    continue;
+                }
+                scratch.polygon.clone_from(&scratch.whole);
+                if place == Place::Inside
+                    || clip(&mut scratch.polygon, &mut scratch.spare, &after.plane)
+                {
                     parts += 1;
                     self.place(piece.triangle, after, scratch);
                     if !visit(piece, after, scratch) {
                         return false;
                     }
+                    if place == Place::Inside {
+                        break;
+                    }
                 }
             }
             if parts == 0 {
                 // Thinner than rounding and between two parts: it goes whole to the one it is nearest to.
-                load(&mut scratch.polygon);
+                scratch.polygon.clone_from(&scratch.whole);
                 let nearest = fan.overlaps[i].iter().map(|&j| &fan.after[j as usize]);
                 let nearest = nearest.max_by(|x, y| {
-                    let depth = |p: &After| p.plane.depth(scratch.polygon[0].plane);
+                    let depth = |p: &After| p.plane.depth(scratch.whole[0].plane);
                     depth(x).total_cmp(&depth(y))
                 });
                 if let Some(after) = nearest {
@@ -295,16 +315,20 @@ impl Correspondence {
 
     /// From a polygon in the plane to corners in space.
     fn place(&self, triangle: u32, after: &After, scratch: &mut Scratch) {
-        scratch.target.clear();
+        scratch.corners.clear();
         scratch.from.clear();
         scratch.to.clear();
         for corner in &scratch.polygon {
             let [_, u, v] = after.weights_at(corner.plane);
-            scratch.target.push([u, v]);
-            scratch.to.push(at(after.face.points, [u, v]));
-            scratch
-                .from
-                .push(at(self.original(triangle), corner.source));
+            // What is judged is what is kept.
+            let corner = Corner {
+                source: Weights31::new(corner.source),
+                target: Weights31::new([u, v]),
+            };
+            scratch.corners.push(corner);
+            let from = at(self.original(triangle), corner.source.get());
+            scratch.from.push(from);
+            scratch.to.push(at(after.face.points, corner.target.get()));
         }
     }
 
@@ -325,12 +349,7 @@ impl Correspondence {
                 let Some((_, into)) = new.iter_mut().find(|(id, _)| *id == after.face.id) else {
                     return true;
                 };
-                for (corner, target) in scratch.polygon.iter().zip(&scratch.target) {
-                    into.corners.push(Corner {
-                        source: corner.source,
-                        target: *target,
-                    });
-                }
+                into.corners.extend_from_slice(&scratch.corners);
                 into.heads.push((piece.triangle, into.corners.len() as u32));
                 for (from, to) in scratch.from.iter().zip(&scratch.to) {
                     let d = *to - *from;

@@ -7,6 +7,9 @@
 
 use glam::DVec3;
 
+use super::sight::{angle, tangent2};
+use crate::num::math::{atan2, sqrt};
+
 /// Facets in a leaf.
 const LEAF: usize = 4;
 /// Halving 2^31 facets leaves fewer levels.
@@ -36,15 +39,71 @@ impl Facet {
         }
     }
 
+    /// The point nearest to `p`.
+    pub(super) fn nearest_point(&self, p: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners;
+        if self.norm > 0.0 {
+            if self.contains(p) {
+                let n = self.normal;
+                return p - n * ((p - a).dot(n) / self.norm);
+            }
+        }
+        let mut best = a;
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let side = to - from;
+            let along = (p - from).dot(side) / side.dot(side);
+            let foot = from.lerp(to, if along > 0.0 { along.min(1.0) } else { 0.0 });
+            if (foot - p).length_squared() < (best - p).length_squared() {
+                best = foot;
+            }
+        }
+        best
+    }
+
+    /// True where the foot of `p` in the plane lies inside all sides.
+    fn contains(&self, p: DVec3) -> bool {
+        let [a, b, c] = self.corners;
+        let left = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(self.normal) >= 0.0;
+        left(a, b) && left(b, c) && left(c, a)
+    }
+
+    /// The point that a viewer at `v` sees under the smallest angle from `p`.
+    fn nearest_in_angle(&self, v: DVec3, p: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners;
+        let sight = p - v;
+        let slope = sight.dot(self.normal);
+        let hit = v + sight * ((a - v).dot(self.normal) / slope);
+        if self.norm > 0.0 && hit.is_finite() && (hit - v).dot(sight) > 0.0 && self.contains(hit) {
+            return hit;
+        }
+        let mut best = a;
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            // Where the cosine along the side is stationary.
+            let (from_v, side) = (from - v, to - from);
+            let (da, de) = (sight.dot(from_v), sight.dot(side));
+            let (aa, ae, ee) = (from_v.dot(from_v), from_v.dot(side), side.dot(side));
+            let t = (da * ae - de * aa) / (de * ae - da * ee);
+            let inside = if t > 0.0 && t < 1.0 {
+                from.lerp(to, t)
+            } else {
+                to
+            };
+            for q in [inside, to] {
+                if tangent2(p, q, v) < tangent2(p, best, v) {
+                    best = q;
+                }
+            }
+        }
+        best
+    }
+
     /// Squared distance from `p`.
     #[inline]
     pub(super) fn squared(&self, p: DVec3) -> f64 {
         let [a, b, c] = self.corners;
         if self.norm > 0.0 {
-            let n = self.normal;
-            let left = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(n) >= 0.0;
-            if left(a, b) && left(b, c) && left(c, a) {
-                let height = (p - a).dot(n);
+            if self.contains(p) {
+                let height = (p - a).dot(self.normal);
                 return height * height / self.norm;
             }
         }
@@ -78,6 +137,17 @@ struct Node {
 }
 
 impl Node {
+    /// A lower bound of the angle between `p` and anything in the box for a viewer at `v`.
+    fn least_angle(&self, v: DVec3, p: DVec3) -> f64 {
+        let (centre, half) = ((self.low + self.high) * 0.5, (self.high - self.low) * 0.5);
+        let (away, radius2) = (centre - v, half.dot(half));
+        let beyond = away.dot(away) - radius2;
+        if beyond <= 0.0 {
+            return 0.0;
+        }
+        angle(p, centre, v) - atan2(sqrt(radius2), sqrt(beyond)) - 1e-12
+    }
+
     #[inline]
     fn squared(&self, p: DVec3) -> f64 {
         let out = (self.low - p).max(p - self.high).max(DVec3::ZERO);
@@ -152,6 +222,37 @@ impl Facets {
             height += 2;
         }
         best
+    }
+
+    /// The point that a viewer at `v` sees under the smallest angle from `p`, or `known` where none is nearer.
+    pub(super) fn nearest_in_angle(&self, v: DVec3, p: DVec3, known: DVec3) -> DVec3 {
+        let mut best = (angle(p, known, v), known);
+        let mut open = vec![0_u32];
+        while let Some(at) = open.pop() {
+            let node = &self.nodes[at as usize];
+            if node.least_angle(v, p) >= best.0 {
+                continue;
+            }
+            if node.facets > 0 {
+                for i in node.link..node.link + node.facets {
+                    let q = self.facet(i).nearest_in_angle(v, p);
+                    let seen = angle(p, q, v);
+                    if seen < best.0 {
+                        best = (seen, q);
+                    }
+                }
+                continue;
+            }
+            let children = [at + 1, node.link];
+            let [first, second] = children.map(|c| self.nodes[c as usize].least_angle(v, p));
+            // The nearer one is looked at first.
+            open.extend(if first < second {
+                [children[1], children[0]]
+            } else {
+                children
+            });
+        }
+        best.1
     }
 }
 
