@@ -7,6 +7,7 @@ macro_rules! answer {
     ($($part:tt)*) => { $crate::cli::answers::line(format_args!($($part)*)) };
 }
 
+mod account;
 mod answers;
 mod check;
 mod check_rays;
@@ -22,7 +23,10 @@ mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
+mod verify;
+mod view_bound;
 mod visibility;
+mod within_distance;
 
 use std::{
     io::Write,
@@ -74,6 +78,7 @@ enum Command {
     Compare(compare::Options),
     Visibility(visibility::Options),
     MergeVisibility(visibility::MergeOptions),
+    Verify(verify::Options),
     Check(check::Options),
     CheckRays(check_rays::Options),
     Inspect(inspect::Options),
@@ -87,7 +92,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["bound", "verify", "lod"];
+const NOT_BUILT: &[&str] = &["bound", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,6 +150,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Visibility(options) => visibility::run(&options, common, &terminal),
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
+        Command::Verify(options) => verify::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),

@@ -5,20 +5,24 @@ use std::{io::Write, path::PathBuf};
 use clap::{ArgGroup, ValueEnum};
 use serde::Serialize;
 
-use super::{Common, Verdict, guidance::Guidance, report, source, terminal::Terminal};
+use super::{
+    Common, Verdict, account, guidance::Guidance, report, source, terminal::Terminal,
+    view_bound::ViewBound, within_distance::WithinDistance,
+};
 use crate::{
     Error, Result,
     collapse::{Schedule, Topology},
     io,
     mesh::{self, content_sha256},
     simplify::{
-        Amount, MethodOptions, Options as RunOptions, Outcome, Stop,
+        Amount, MethodOptions, Options as RunOptions, Stop,
         image::{
             DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start,
         },
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
         simplify, simplify_guided,
+        tolerance::Guarantee,
         visibility::VisibilityOptions,
     },
     view::ViewsName,
@@ -87,6 +91,10 @@ pub(super) struct Options {
     probabilistic: bool,
     #[command(flatten)]
     guidance: Guidance,
+    #[command(flatten)]
+    view_bound: ViewBound,
+    #[command(flatten)]
+    within: WithinDistance,
     /// Write the history of collapses, moves and flips, for `lodmark replay`
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -109,11 +117,9 @@ enum Method {
     Quadric,
     /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002)
     Visibility,
-    /// Within a tolerance volume (not built yet)
-    #[value(hide = true)]
+    /// Within a distance of the input, guaranteed (after Cox & Chibelushi 2005)
     Tolerance,
-    /// Within an angle for a view cell (not built yet)
-    #[value(hide = true)]
+    /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007)
     ViewBounded,
 }
 
@@ -194,6 +200,9 @@ struct Summary<'a> {
     /// V(M) of the input; only for the method that is guided by it.
     v_mesh: Option<f64>,
     phases: &'a [crate::simplify::Phase],
+    /// What is proved about the distance from the input; only for the method that keeps one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    guarantee: Option<Guarantee>,
     #[serde(skip_serializing_if = "Option::is_none")]
     polish: &'a Option<PolishCounters>,
     content_sha256: String,
@@ -205,10 +214,18 @@ impl Options {
         let target = match (self.triangles, self.ratio) {
             (Some(n), _) => Amount::Triangles(n),
             (None, Some(r)) => Amount::Ratio(r),
-            (None, None) if self.error_rms.is_some() => Amount::ErrorOnly,
+            (None, None)
+                if self.error_rms.is_some()
+                    || self.view_bound.has_error()
+                    || self.within.has_error() =>
+            {
+                Amount::ErrorOnly
+            }
             (None, None) => {
                 return Err(Error::Usage(
-                    "no target; give --triangles N, --ratio R or --error-rms LEVELS".into(),
+                    "no target; give --triangles N, --ratio R or an error that the method honours: --error-rms LEVELS, \
+                     --error E, --error-abs LENGTH, --error-deg DEGREES or --error-px PIXELS"
+                        .into(),
                 ));
             }
         };
@@ -226,14 +243,8 @@ impl Options {
                 quadric: self.quadric(),
                 ..self.guidance.options()
             }),
-            Method::Tolerance | Method::ViewBounded => {
-                return Err(Error::Unsupported(format!(
-                    "the method `{}` is not built yet; use image, memoryless, quadric or visibility",
-                    self.method
-                        .to_possible_value()
-                        .map_or_else(String::new, |v| v.get_name().to_string())
-                )));
-            }
+            Method::ViewBounded => MethodOptions::ViewBounded(self.view_bound.options()?),
+            Method::Tolerance => MethodOptions::Tolerance(self.within.options()?),
         };
         self.refuse_foreign(&method)?;
         let mut options = match method {
@@ -241,6 +252,8 @@ impl Options {
             MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
             MethodOptions::Quadric(_) => RunOptions::quadric(target),
             MethodOptions::Visibility(_) => RunOptions::visibility(target),
+            MethodOptions::Tolerance(own) => RunOptions::tolerance(own, target),
+            MethodOptions::ViewBounded(ref own) => RunOptions::view_bounded(own.clone(), target),
         };
         options.method = method;
         options.error_rms = self.error_rms;
@@ -310,11 +323,21 @@ impl Options {
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
         let guidance = self.guidance.given();
+        let bound = self.view_bound.given();
+        let distance = self.within.given();
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance].concat(),
-            MethodOptions::Memoryless(_) => &[image.as_slice(), &quadric, &guidance].concat(),
-            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance].concat(),
-            MethodOptions::Visibility(_) => &image,
+            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &bound, &distance].concat(),
+            MethodOptions::Memoryless(_) => {
+                &[image.as_slice(), &quadric, &guidance, &bound, &distance].concat()
+            }
+            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &bound, &distance].concat(),
+            MethodOptions::Visibility(_) => &[image.as_slice(), &bound, &distance].concat(),
+            MethodOptions::Tolerance(_) => {
+                &[image.as_slice(), &quadric, &guidance, &bound].concat()
+            }
+            MethodOptions::ViewBounded(_) => {
+                &[image.as_slice(), &quadric, &guidance, &distance].concat()
+            }
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(Error::Usage(format!(
@@ -350,6 +373,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let outputs = [
         Some(&options.output),
         options.history.as_ref(),
+        options.view_bound.output(),
         common.json.as_ref(),
     ];
     source::require_outputs(outputs.into_iter().flatten())?;
@@ -369,8 +393,13 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
         None => simplify(&canonical.mesh, &resolved, terminal)?,
     };
-    tell(options, triangles_in, &outcome, terminal);
-    if options.strict && !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput) {
+    account::tell(&options.input, triangles_in, &outcome, terminal);
+    let bounded = matches!(
+        outcome.options.method,
+        MethodOptions::ViewBounded(_) | MethodOptions::Tolerance(_)
+    ) && outcome.options.target == Amount::ErrorOnly;
+    let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
+    if options.strict && short && !bounded {
         return Err(Error::TargetNotReached(format!(
             "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
             outcome.mesh.triangles().len()
@@ -383,6 +412,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         let bytes = outcome.history.to_bytes();
         io::atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
     }
+    options.view_bound.write(&canonical.mesh, &outcome)?;
     let summary = Summary {
         input: &options.input,
         output: &options.output,
@@ -393,6 +423,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         stop: &outcome.stop,
         error_rms: outcome.error_rms,
         v_mesh: outcome.v_mesh,
+        guarantee: outcome.guarantee,
         phases: &outcome.phases,
         polish: &outcome.polish,
         content_sha256: content_sha256(&outcome.mesh),
@@ -406,64 +437,4 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         summary.vertices_out
     );
     Ok(Verdict::Good)
-}
-
-/// Says how it ended, in particular where that is short of the target.
-fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
-    for phase in &outcome.phases {
-        let c = &phase.counters;
-        terminal.say(&format!(
-            "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
-            phase.method,
-            phase.triangles_in,
-            phase.triangles_out,
-            c.collapses,
-            c.evaluations,
-            c.evaluations_if_eager
-        ));
-        if !c.ranks.is_empty() {
-            let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
-            terminal.say(&format!(
-                "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
-                phase.method,
-                100.0 * mean,
-                c.ranks.len()
-            ));
-        }
-    }
-    if let Some(v) = outcome.v_mesh {
-        terminal.say(&format!("visibility of the input: {v:.4}"));
-    }
-    if let Some(polish) = &outcome.polish {
-        terminal.say(&format!(
-            "polish: {} moves, {} flips; {} evaluations",
-            polish.moves, polish.flips, polish.evaluations
-        ));
-        for (i, [before, after]) in polish.cameras.iter().enumerate() {
-            let before_that = if i == 0 {
-                ""
-            } else {
-                ", which had driven nothing"
-            };
-            terminal.say(&format!(
-                "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
-                i + 1
-            ));
-        }
-    }
-    if let Some(rms) = outcome.error_rms {
-        terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
-    }
-    match &outcome.stop {
-        Stop::TargetReached => {}
-        Stop::TargetAboveInput => terminal.say(&format!(
-            "{}: already has {triangles_in} triangles; the result is a copy",
-            options.input.display()
-        )),
-        Stop::ErrorLimit => terminal.say("stopped at the error limit"),
-        Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
-            "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
-            outcome.mesh.triangles().len()
-        )),
-    }
 }

@@ -227,7 +227,7 @@ impl<M: Method> Engine<M> {
                             self.counters.estimates += 1;
                             queue.defer(&self.live, id, geometric);
                         }
-                        None => self.refresh(&mut queue, &[id]),
+                        None => self.look_ahead(&mut queue, id),
                     }
                 }
                 Some(Front::Ready(id, proposal)) => {
@@ -240,6 +240,13 @@ impl<M: Method> Engine<M> {
                     }
                     let position = proposal.position.position();
                     self.ring.patch(&self.live, position, &mut self.patch);
+                    if !self.method.confirm(&self.live, &self.patch, &proposal) {
+                        self.refresh(&mut queue, &[id]);
+                        if queue.known(id) == Some(proposal) {
+                            self.note(&mut queue, id, Err(Refusal::Method));
+                        }
+                        continue;
+                    }
                     if !self.method.within_limit(&self.live, &self.patch, &proposal) {
                         break End::ErrorLimit;
                     }
@@ -317,6 +324,17 @@ impl<M: Method> Engine<M> {
             self.refresh(queue, &touched);
         }
         self.touched = touched;
+    }
+
+    /// Evaluates the edge at the front, and with it those behind it that wait under an estimate as well.
+    fn look_ahead(&mut self, queue: &mut Queue, id: u32) {
+        match self.method.looks_ahead() {
+            0 | 1 => self.refresh(queue, &[id]),
+            count => {
+                let ids = queue.estimated_in_front(count);
+                self.refresh(queue, &ids);
+            }
+        }
     }
 
     /// Evaluates edges again and re-keys them.

@@ -110,6 +110,16 @@ refusals! {
     Mirror => "mirror",
     /// The method itself refuses.
     Method => "method",
+    /// A new face would be too far from the faces before it.
+    LocalBound => "local-bound",
+    /// A new face would be too far from the original.
+    Strays => "strays",
+    /// A part of the original would be too far from the new mesh.
+    Uncovers => "uncovers",
+    /// The faces before cannot be mapped onto the faces after: no disc, or folded.
+    Unmapped => "unmapped",
+    /// A point would be farther from what stands for it than is allowed.
+    Bound => "bound",
 }
 
 /// How often each rule refused.

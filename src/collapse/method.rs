@@ -129,6 +129,19 @@ pub trait Method: Sync {
         true
     }
 
+    /// Called before [`Method::within_limit`] with the patch that is about to be committed: false where the proposal no
+    /// longer holds because of a change that did not touch its ring. The edge is then proposed again.
+    fn confirm(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {
+        let _ = (live, patch, proposal);
+        true
+    }
+
+    /// How many edges that wait under an estimate are evaluated together when the first of them comes to the front, on
+    /// all threads; 1 for methods whose evaluations are too short to be shared.
+    fn looks_ahead(&self) -> usize {
+        1
+    }
+
     /// Called after every commit; `live` already has the patch. Old and new corner positions:
     /// [`Patch::before`], [`Patch::after`].
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

@@ -144,6 +144,24 @@ impl Queue {
         self.marks[id as usize].estimated
     }
 
+    /// Of the `count` edges in front, those that wait under an estimate; the first of all must be one.
+    pub(super) fn estimated_in_front(&mut self, count: usize) -> Vec<u32> {
+        let mut front = Vec::with_capacity(count);
+        while front.len() < count {
+            let Some(entry) = self.heap.pop() else { break };
+            front.push(entry);
+        }
+        for &(key, id) in &front {
+            self.heap.set(id, key);
+        }
+        let mark = |id: u32| self.marks[id as usize];
+        let ids = front.into_iter().map(|(_, id)| id);
+        ids.enumerate()
+            .filter(|&(i, id)| i == 0 || (mark(id).dirty && mark(id).estimated))
+            .map(|(_, id)| id)
+            .collect()
+    }
+
     /// A stale edge costs about `geometric`. Where that is more than it waits under, it goes on waiting there: it is
     /// estimated again at the front.
     pub(super) fn expect(&mut self, live: &LiveMesh, id: u32, geometric: f64) {

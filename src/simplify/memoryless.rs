@@ -310,6 +310,12 @@ impl Objective {
         }
     }
 
+    /// [`Objective::optimum`] as its matrix and vector, relative to the midpoint of the edge.
+    pub(super) fn quadratic(&self) -> ([f64; 6], DVec3) {
+        let gradient = self.optimum();
+        (gradient.h, gradient.c)
+    }
+
     /// Swept volumes and swept boundary areas as one objective. 9 = (1/2) / (1/18), the ratio of their Hessians.
     fn optimum(&self) -> Gradient {
         let [volume, area] = self.weights;

@@ -11,6 +11,8 @@ mod options;
 mod outcome;
 pub mod quadric;
 mod run;
+pub mod tolerance;
+pub mod view_bounded;
 pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.

@@ -8,10 +8,13 @@ use super::{
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
+    tolerance::{Guarantee, ToleranceMethod, ToleranceOptions},
+    view_bounded::{ViewBounded, ViewBoundedOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
     Error, Progress, Result,
+    bound::correspondence::Correspondence,
     collapse::{
         Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
     },
@@ -83,6 +86,10 @@ fn in_pool(
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {
+        if matches!(options.method, MethodOptions::ViewBounded(_)) {
+            let all = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+            run.correspondence = Some(Correspondence::identity(all.collect()));
+        }
         return run.finish(Stop::TargetAboveInput);
     }
     let target = Target { triangles };
@@ -101,6 +108,8 @@ fn in_pool(
             EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
         },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
+        MethodOptions::Tolerance(own) => run.within_distance(own, target)?,
+        MethodOptions::ViewBounded(own) => run.view_bounded(own, target)?,
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -119,6 +128,8 @@ struct Run<'a> {
     v_mesh: Option<f64>,
     polish: Option<PolishCounters>,
     error_rms: Option<f64>,
+    guarantee: Option<Guarantee>,
+    correspondence: Option<Correspondence>,
     progress: &'a dyn Progress,
 }
 
@@ -134,6 +145,8 @@ impl<'a> Run<'a> {
             v_mesh: None,
             polish: None,
             error_rms: None,
+            guarantee: None,
+            correspondence: None,
             progress,
         }
     }
@@ -281,6 +294,32 @@ impl<'a> Run<'a> {
             .0)
     }
 
+    /// Cox & Chibelushi 2005: one phase for every local bound.
+    fn within_distance(&mut self, own: &ToleranceOptions, target: Target) -> Result<End> {
+        self.progress.step("prepare", 0, 0)?;
+        let mut method = ToleranceMethod::new(&self.live, *own)?;
+        self.guarantee = Some(method.guarantee());
+        let mut end = End::TargetReached;
+        for bound in method.local_bounds() {
+            method.set_local_bound(bound);
+            let before = (self.live.triangle_count(), Counters::default());
+            (end, method) = self.phase("tolerance", method, target, before)?;
+            if end == End::TargetReached {
+                break;
+            }
+        }
+        Ok(end)
+    }
+
+    /// Eisemann & Décoret 2007: within an angle for all viewers in a cell.
+    fn view_bounded(&mut self, own: &ViewBoundedOptions, target: Target) -> Result<End> {
+        let method = ViewBounded::new(&self.live, own, self.progress)?;
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("view-bounded", method, target, before)?;
+        self.correspondence = Some(method.into_correspondence(&self.live)?);
+        Ok(end)
+    }
+
     fn finish(self, stop: Stop) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
@@ -297,6 +336,8 @@ impl<'a> Run<'a> {
             options: self.options,
             v_mesh: self.v_mesh,
             error_rms: self.error_rms,
+            guarantee: self.guarantee,
+            correspondence: self.correspondence,
         })
     }
 }

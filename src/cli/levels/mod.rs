@@ -172,7 +172,10 @@ impl Options {
                     return simplify_guided(mesh, &options, &visibility, terminal);
                 }
             }
-            MethodOptions::Memoryless(_) | MethodOptions::Quadric(_) => {}
+            MethodOptions::Memoryless(_)
+            | MethodOptions::Quadric(_)
+            | MethodOptions::Tolerance(_)
+            | MethodOptions::ViewBounded(_) => {}
         }
         simplify(mesh, &options, terminal)
     }

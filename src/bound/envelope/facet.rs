@@ -1,0 +1,150 @@
+//! A triangle prepared for distances from many points.
+//!
+//! **Every distance is an upper bound**: it is measured to a point that was found inside the triangle, so a wrong choice
+//! (rounding, a sliver) makes it too long and never too short. What rounding adds is the rounding of the difference
+//! between two points, a few units in the last place of that difference: [`Facet::distance2`] may be too short by a
+//! relative 1e-14 and no more. Units: those of the positions.
+
+use glam::DVec3;
+
+/// `sin^2` of the corner below which a triangle is a sliver: its barycentric coordinates may point at the wrong edge.
+const SLIVER: f64 = 1e-8;
+
+/// A triangle, its box, and the sums of its barycentric coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Facet {
+    corner: DVec3,
+    sides: [DVec3; 2],
+    /// Squared lengths of the sides at the corner, and their dot product.
+    gram: [f64; 3],
+    /// One over the determinant of the Gram matrix; 0 for a sliver.
+    scale: f64,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Facet {
+    /// Prepares a triangle; it may have no area.
+    #[must_use]
+    pub fn new([a, b, c]: [DVec3; 3]) -> Self {
+        let sides = [b - a, c - a];
+        let gram = [
+            sides[0].dot(sides[0]),
+            sides[0].dot(sides[1]),
+            sides[1].dot(sides[1]),
+        ];
+        let determinant = gram[0] * gram[2] - gram[1] * gram[1];
+        let sturdy = determinant > SLIVER * (gram[0] * gram[2]);
+        Self {
+            corner: a,
+            sides,
+            gram,
+            scale: if sturdy { 1.0 / determinant } else { 0.0 },
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+        }
+    }
+
+    /// A total order of different triangles that depends on coordinates alone.
+    pub(super) fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let numbers = |f: &Self| {
+            [f.corner, f.low, f.high, f.sides[0], f.sides[1]]
+                .map(|p| p.to_array())
+                .concat()
+        };
+        let pairs = numbers(self).into_iter().zip(numbers(other));
+        pairs.fold(std::cmp::Ordering::Equal, |order, (a, b)| {
+            order.then(a.total_cmp(&b))
+        })
+    }
+
+    /// Least coordinates.
+    #[inline]
+    #[must_use]
+    pub fn low(&self) -> DVec3 {
+        self.low
+    }
+
+    /// Largest coordinates.
+    #[inline]
+    #[must_use]
+    pub fn high(&self) -> DVec3 {
+        self.high
+    }
+
+    /// False where a point is farther than `reach` from the box along an axis.
+    #[inline]
+    #[must_use]
+    pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
+        let (below, above) = (self.low - p, p - self.high);
+        below.x <= reach
+            && below.y <= reach
+            && below.z <= reach
+            && above.x <= reach
+            && above.y <= reach
+            && above.z <= reach
+    }
+
+    /// Squared distance from `p` to a point of the triangle: the nearest one but for rounding.
+    #[inline]
+    #[must_use]
+    pub fn distance2(&self, p: DVec3) -> f64 {
+        let [ab, ac] = self.sides;
+        let [bb, bc, cc] = self.gram;
+        let ap = p - self.corner;
+        let (along_b, along_c) = (ap.dot(ab), ap.dot(ac));
+        if self.scale == 0.0 {
+            let nearer = self.to_ab(ap, along_b).min(self.to_ac(ap, along_c));
+            return nearer.min(self.to_bc(ap));
+        }
+        let v = (cc * along_b - bc * along_c) * self.scale;
+        let w = (bb * along_c - bc * along_b) * self.scale;
+        let u = (1.0 - v) - w;
+        if u >= 0.0 && v >= 0.0 && w >= 0.0 {
+            let d = ap - (ab * v + ac * w);
+            return d.dot(d);
+        }
+        // The nearest point lies on an edge that the point is outside of.
+        let mut best = f64::INFINITY;
+        if w < 0.0 {
+            best = self.to_ab(ap, along_b);
+        }
+        if v < 0.0 {
+            best = best.min(self.to_ac(ap, along_c));
+        }
+        if u < 0.0 {
+            best = best.min(self.to_bc(ap));
+        }
+        best
+    }
+
+    #[inline]
+    fn to_ab(&self, ap: DVec3, along: f64) -> f64 {
+        to_segment(ap, self.sides[0], along, self.gram[0])
+    }
+
+    #[inline]
+    fn to_ac(&self, ap: DVec3, along: f64) -> f64 {
+        to_segment(ap, self.sides[1], along, self.gram[2])
+    }
+
+    #[inline]
+    fn to_bc(&self, ap: DVec3) -> f64 {
+        let [ab, ac] = self.sides;
+        let (bp, bc) = (ap - ab, ac - ab);
+        to_segment(bp, bc, bp.dot(bc), bc.dot(bc))
+    }
+}
+
+/// Squared length of `p` minus the nearest point of the segment from the origin along `side`.
+#[inline]
+fn to_segment(p: DVec3, side: DVec3, along: f64, length2: f64) -> f64 {
+    let d = if along <= 0.0 {
+        p
+    } else if along >= length2 {
+        p - side
+    } else {
+        p - side * (along / length2)
+    };
+    d.dot(d)
+}

@@ -1,0 +1,92 @@
+//! What lies around a collapsing edge, as tolerance volumes see it.
+//!
+//! Coordinates are relative to the edge's midpoint, so that plane offsets do not cancel.
+
+use glam::DVec3;
+
+use super::{HalfSpace, Prism};
+
+/// A triangle at either end of the edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OldFace {
+    /// Its corners, counter-clockwise seen from outside.
+    pub points: [DVec3; 3],
+    /// Which of them are ends of the edge: one (a boundary triangle) or two (an internal one).
+    pub ends: [bool; 3],
+}
+
+impl OldFace {
+    /// The edge opposite to the end, directed as in the triangle; `None` for an internal triangle.
+    #[must_use]
+    pub fn link(&self) -> Option<[DVec3; 2]> {
+        match self.ends.iter().filter(|&&e| e).count() {
+            1 => {
+                let at = self.ends.iter().position(|&e| e)?;
+                Some([self.points[(at + 1) % 3], self.points[(at + 2) % 3]])
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The triangles around an edge, their prisms and the link.
+#[derive(Clone, Debug, Default)]
+pub struct Neighborhood {
+    origin: DVec3,
+    faces: Vec<OldFace>,
+    prisms: Vec<Prism>,
+    links: Vec<[DVec3; 2]>,
+}
+
+impl Neighborhood {
+    /// The triangles at the ends of an edge, whose midpoint is `origin`; `None` where one of them is a needle.
+    #[must_use]
+    pub fn new(origin: DVec3, faces: impl Iterator<Item = OldFace>) -> Option<Self> {
+        let mut own = Self {
+            origin,
+            ..Self::default()
+        };
+        for face in faces {
+            let points = face.points.map(|p| p - origin);
+            let face = OldFace { points, ..face };
+            own.prisms.push(Prism::new(points)?);
+            own.links.extend(face.link());
+            own.faces.push(face);
+        }
+        Some(own)
+    }
+
+    /// What coordinates are relative to.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// The old triangles, relative.
+    #[must_use]
+    pub fn faces(&self) -> &[OldFace] {
+        &self.faces
+    }
+
+    /// Their prisms, relative.
+    #[must_use]
+    pub fn prisms(&self) -> &[Prism] {
+        &self.prisms
+    }
+
+    /// The edges of the link, relative; a new triangle stands on every one.
+    #[must_use]
+    pub fn links(&self) -> &[[DVec3; 2]] {
+        &self.links
+    }
+
+    /// The convex kernel: behind the walls that stand on the link.
+    pub fn kernel(&self) -> impl Iterator<Item = HalfSpace> {
+        let pairs = self.faces.iter().zip(&self.prisms);
+        pairs.filter_map(|(face, prism)| {
+            face.link()?;
+            let at = face.ends.iter().position(|&e| e)?;
+            Some(prism.walls[(at + 1) % 3])
+        })
+    }
+}

@@ -1,0 +1,89 @@
+//! What a run of simplification says about itself: its phases, what is guaranteed, and how it ended.
+
+use std::path::Path;
+
+use super::terminal::Terminal;
+use crate::{
+    collapse::{Refusal, Refusals},
+    simplify::{Outcome, Stop},
+};
+
+/// True where a bound on distances or angles stands in the way of a collapse.
+fn by_bound(refusals: &Refusals) -> bool {
+    use Refusal::{Bound, LocalBound, Strays, Uncovers};
+    let bounds = [Bound, LocalBound, Strays, Uncovers];
+    bounds.into_iter().any(|r| refusals.count(r) > 0)
+}
+
+/// Says how it ended, in particular where that is short of the target.
+pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
+    for phase in &outcome.phases {
+        let c = &phase.counters;
+        terminal.say(&format!(
+            "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
+            phase.method,
+            phase.triangles_in,
+            phase.triangles_out,
+            c.collapses,
+            c.evaluations,
+            c.evaluations_if_eager
+        ));
+        if !c.ranks.is_empty() {
+            let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
+            terminal.say(&format!(
+                "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
+                phase.method,
+                100.0 * mean,
+                c.ranks.len()
+            ));
+        }
+    }
+    if let Some(v) = outcome.v_mesh {
+        terminal.say(&format!("visibility of the input: {v:.4}"));
+    }
+    if let Some(polish) = &outcome.polish {
+        terminal.say(&format!(
+            "polish: {} moves, {} flips; {} evaluations",
+            polish.moves, polish.flips, polish.evaluations
+        ));
+        for (i, [before, after]) in polish.cameras.iter().enumerate() {
+            let before_that = if i == 0 {
+                ""
+            } else {
+                ", which had driven nothing"
+            };
+            terminal.say(&format!(
+                "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
+                i + 1
+            ));
+        }
+    }
+    if let Some(rms) = outcome.error_rms {
+        terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
+    }
+    if let Some(g) = outcome.guarantee {
+        terminal.say(&format!(
+            "guaranteed: no point of the result is farther than {:.6e} from the input{}",
+            g.distance,
+            if g.two_sided { ", nor back" } else { "" }
+        ));
+    }
+    match &outcome.stop {
+        Stop::TargetReached => {}
+        Stop::TargetAboveInput => terminal.say(&format!(
+            "{}: already has {triangles_in} triangles; the result is a copy",
+            input.display()
+        )),
+        Stop::ErrorLimit => terminal.say("stopped at the error limit"),
+        Stop::NoLegalCollapse { refusals } if by_bound(refusals) => {
+            terminal.say(&format!(
+                "stopped with {} triangles: every collapse that is left breaks the bound or a rule ({refusals})",
+                outcome.mesh.triangles().len()
+            ));
+        }
+        Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
+            "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
+            outcome.mesh.triangles().len()
+        )),
+    }
+}

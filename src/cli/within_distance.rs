@@ -1,0 +1,86 @@
+//! The options of the method `tolerance`: how far from the input the result may be.
+
+use clap::ValueEnum;
+
+use crate::{
+    Error, Result,
+    bound::tolerance::Source,
+    simplify::tolerance::{Distance, ToleranceOptions},
+};
+
+/// Options of the method `tolerance`.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(super) struct WithinDistance {
+    /// Tolerance method: largest distance between input and result, as a fraction of the bounding-box diagonal
+    #[arg(
+        long,
+        value_name = "E",
+        allow_negative_numbers = true,
+        conflicts_with = "error_abs"
+    )]
+    error: Option<f64>,
+    /// Tolerance method: largest distance between input and result, in the units of the file
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    error_abs: Option<f64>,
+    /// Tolerance method: bound the distance from the result to the input only, not back
+    #[arg(long)]
+    one_sided: bool,
+    /// Tolerance method: where other places are refused, try the best one in the tolerance volume (slow)
+    #[arg(long, value_enum)]
+    volume: Option<VolumeName>,
+    /// Tolerance method: a local bound that grows, as published (slow)
+    #[arg(long)]
+    growing: bool,
+}
+
+/// [`Source`] by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum VolumeName {
+    /// No new face pierces a cap
+    Edges,
+    /// As published: partition sets from vertices
+    Vertices,
+}
+
+impl WithinDistance {
+    /// True where an error is asked for.
+    pub(super) fn has_error(&self) -> bool {
+        self.error.is_some() || self.error_abs.is_some()
+    }
+
+    /// The names of all options, and which of them are given.
+    pub(super) fn given(&self) -> [(&'static str, bool); 5] {
+        [
+            ("--error", self.error.is_some()),
+            ("--error-abs", self.error_abs.is_some()),
+            ("--one-sided", self.one_sided),
+            ("--volume", self.volume.is_some()),
+            ("--growing", self.growing),
+        ]
+    }
+
+    /// The options of the library.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the distance is missing.
+    pub(super) fn options(&self) -> Result<ToleranceOptions> {
+        let error = match (self.error, self.error_abs) {
+            (Some(share), _) => Distance::OfDiagonal(share),
+            (None, Some(length)) => Distance::Length(length),
+            (None, None) => {
+                return Err(Error::Usage(
+                    "the method `tolerance` needs --error E, a fraction of the diagonal, or --error-abs LENGTH".into(),
+                ));
+            }
+        };
+        Ok(ToleranceOptions {
+            one_sided: self.one_sided,
+            volume: self.volume.map(|name| match name {
+                VolumeName::Edges => Source::Edges,
+                VolumeName::Vertices => Source::Vertices,
+            }),
+            growing: self.growing,
+            ..ToleranceOptions::new(error)
+        })
+    }
+}

@@ -1,0 +1,290 @@
+//! The method: proposals that are certified.
+
+use glam::DVec3;
+
+use super::{
+    super::memoryless::{Memoryless, Objective},
+    Distance, Guarantee, ToleranceOptions,
+};
+use crate::{
+    Error, Result,
+    bound::{
+        envelope::{Change, Coverage, Pieces, Reach, Surface, Trial},
+        tolerance::{Neighborhood, OldFace, Quadratic, Volume},
+    },
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    num::math,
+};
+
+/// How often the local bound doubles until it is the bound, in two steps each time: it starts at 1/32 of it.
+const DOUBLINGS: u32 = 5;
+/// Half-space tests of volumes: a share of the diagonal.
+const TOLERANCE: f64 = 1e-9;
+/// Bounds beyond so many diagonals mean the same.
+const FAR: f64 = 4.0;
+/// Edges that are evaluated together. Part of the result's making, not of the result.
+const AHEAD: usize = 32;
+
+/// The method on an original.
+#[derive(Clone, Debug)]
+pub struct ToleranceMethod {
+    options: ToleranceOptions,
+    memoryless: Memoryless,
+    surface: Surface,
+    /// What the original's triangles are near to; `None` where only the other direction counts.
+    coverage: Option<Coverage>,
+    diagonal: f64,
+    reach: Reach,
+    /// The bound of a single collapse against the faces before it; infinite for none.
+    local: f64,
+    guarantee: Guarantee,
+    change: Change,
+    own: Scratch,
+}
+
+/// Buffers of an evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    trial: Trial,
+    pieces: Pieces,
+    removed: Vec<u32>,
+    added: Vec<u32>,
+}
+
+impl ToleranceMethod {
+    /// The method on the original, `live`. O(n log n).
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the bound is as small as the rounding of the coordinates.
+    pub fn new(live: &LiveMesh, options: ToleranceOptions) -> Result<Self> {
+        let triangles: Vec<[u32; 3]> = (0..live.triangle_ids())
+            .map(|t| live.triangle(t).unwrap_or_default())
+            .collect();
+        let corners = (0..live.triangle_ids()).filter_map(|t| live.points(t));
+        let points = || corners.clone().flatten();
+        let low = points().reduce(DVec3::min).unwrap_or_default();
+        let high = points().reduce(DVec3::max).unwrap_or_default();
+        let diagonal = math::length(high - low);
+        let frame = live.frame();
+        let (length, wanted) = match options.error {
+            Distance::OfDiagonal(share) => (share * diagonal, share),
+            Distance::Length(length) => (frame.enter_length(length), length),
+        };
+        let largest = low.abs().max(high.abs()).max_element();
+        let bound = length.min(FAR * diagonal);
+        let reach = Reach::new(bound, largest).ok_or_else(|| {
+            Error::Usage(format!(
+                "the error {wanted} is a distance of {}, which is lost in the rounding of coordinates as large as {}; expected a larger one",
+                frame.leave_length(length, 1),
+                frame.leave_length(largest, 1),
+            ))
+        })?;
+        Ok(Self {
+            memoryless: Memoryless::new(live, options.placement),
+            coverage: (!options.one_sided).then(|| Coverage::new(live.positions(), &triangles)),
+            surface: Surface::new(corners),
+            diagonal,
+            reach,
+            local: f64::INFINITY,
+            guarantee: Guarantee {
+                distance: frame.leave_length(bound, 1),
+                of_diagonal: (diagonal > 0.0).then_some(bound / diagonal),
+                two_sided: !options.one_sided,
+            },
+            change: Change::default(),
+            own: Scratch::default(),
+            options,
+        })
+    }
+
+    /// What holds for the mesh at any time.
+    #[must_use]
+    pub fn guarantee(&self) -> Guarantee {
+        self.guarantee
+    }
+
+    /// The local bounds that a run goes through, in frame units; infinite is none. The last one is.
+    #[must_use]
+    pub fn local_bounds(&self) -> Vec<f64> {
+        let mut bounds = Vec::new();
+        if self.options.growing {
+            let own = self.reach.length;
+            for doublings in 0..DOUBLINGS {
+                let bound = own / f64::from(1_u32 << (DOUBLINGS - doublings));
+                bounds.extend([bound, bound * std::f64::consts::SQRT_2]);
+            }
+            bounds.push(own);
+        }
+        bounds.push(f64::INFINITY);
+        bounds
+    }
+
+    /// Bounds every collapse by the faces before it: by `bound` in frame units.
+    pub fn set_local_bound(&mut self, bound: f64) {
+        self.local = bound;
+    }
+
+    /// Tests a position that the rules admit.
+    fn certify(
+        &self,
+        site: &Site<'_>,
+        position: DVec3,
+        around: &mut Around,
+        scratch: &mut Scratch,
+    ) -> Result<(), Refusal> {
+        let fan = || {
+            let faces = site.ring.faces.iter().filter(|f| f.survives);
+            faces.map(|f| f.points_after(position))
+        };
+        if self.local < f64::INFINITY
+            && !around
+                .of(site)
+                .is_some_and(|a| a.keeps(position - a.origin(), self.local))
+        {
+            return Err(Refusal::LocalBound);
+        }
+        if !self.surface.reaches(position, self.reach) {
+            return Err(Refusal::Strays);
+        }
+        if self.coverage.is_some() && !scratch.trial.covers(fan(), self.reach) {
+            return Err(Refusal::Uncovers);
+        }
+        if !self.surface.holds(fan(), self.reach, &mut scratch.pieces) {
+            return Err(Refusal::Strays);
+        }
+        Ok(())
+    }
+
+    /// The place of least cost in the tolerance volume of a ring without boundary.
+    fn in_volume(
+        &self,
+        site: &Site<'_>,
+        objective: &Objective,
+        around: &mut Around,
+    ) -> Option<DVec3> {
+        let source = self.options.volume?;
+        if !site.ring.boundary.is_empty() {
+            return None;
+        }
+        let around = around.of(site)?;
+        let bound = self.local.min(self.reach.length);
+        let volume = Volume::new(around, bound, source, TOLERANCE * self.diagonal);
+        let (matrix, linear) = objective.quadratic();
+        let place = volume.minimum(&Quadratic { matrix, linear })?;
+        Some(place + around.origin())
+    }
+}
+
+/// The neighbourhood of a ring, made where it is asked for.
+#[derive(Default)]
+struct Around(Option<Option<Neighborhood>>);
+
+impl Around {
+    fn of(&mut self, site: &Site<'_>) -> Option<&Neighborhood> {
+        let ring = site.ring;
+        let faces = || {
+            ring.faces.iter().map(|f| OldFace {
+                points: f.points,
+                ends: [0, 1, 2].map(|k| f.at.contains(&k)),
+            })
+        };
+        let own = &mut self.0;
+        own.get_or_insert_with(|| Neighborhood::new(ring.midpoint(), faces()))
+            .as_ref()
+    }
+}
+
+impl Method for ToleranceMethod {
+    type Scratch = Scratch;
+
+    fn scratch(&self) -> Scratch {
+        Scratch::default()
+    }
+
+    fn propose(&self, site: &Site<'_>, scratch: &mut Scratch) -> Result<Proposal, Refusal> {
+        let objective = Objective::of(site.ring, &self.options.placement);
+        if let Some(coverage) = &self.coverage {
+            scratch.removed.clear();
+            scratch.removed.extend(site.ring.faces.iter().map(|f| f.id));
+            let corners = |f| site.live.points(f);
+            coverage.gather(&scratch.removed, corners, self.reach, &mut scratch.trial);
+        }
+        let mut around = Around::default();
+        let attempt = |position, around: &mut Around, scratch: &mut Scratch| {
+            let position = site.admit(position)?;
+            self.certify(site, position.position(), around, scratch)?;
+            Ok(Proposal {
+                position,
+                image: 0,
+                geometric: objective.cost(site.ring, position.position()),
+            })
+        };
+        if let Some(fixed) = site.fixed() {
+            return attempt(fixed, &mut around, scratch);
+        }
+        // What is told of a refused edge is the last test that any place came to.
+        let mut refusal = Refusal::Unplaced;
+        if let Some(optimum) = objective.place().position {
+            match attempt(optimum, &mut around, scratch) {
+                Ok(proposal) => return Ok(proposal),
+                Err(reason) => refusal = refusal.max(reason),
+            }
+        }
+        let [u, w] = site.ring.points;
+        let mut others = [u, w, site.ring.midpoint()].map(|p| (objective.cost(site.ring, p), p));
+        others.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, place) in others {
+            match attempt(place, &mut around, scratch) {
+                Ok(proposal) => return Ok(proposal),
+                Err(reason) => refusal = refusal.max(reason),
+            }
+        }
+        if let Some(place) = self.in_volume(site, &objective, &mut around)
+            && let Ok(proposal) = attempt(place, &mut around, scratch)
+        {
+            return Ok(proposal);
+        }
+        Err(refusal)
+    }
+
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        self.memoryless.estimate(live, edge)
+    }
+
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        self.memoryless.may_fall(live, edge)
+    }
+
+    /// Another collapse may have changed a witness outside the ring: the test is made again, and finds the witnesses.
+    fn confirm(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
+        let Some(coverage) = &self.coverage else {
+            return true;
+        };
+        let own = &mut self.own;
+        own.removed.clear();
+        own.removed.extend(patch.removed.iter().map(|f| f.id));
+        own.added.clear();
+        own.added.extend(patch.added.iter().map(|f| f.id));
+        let corners = |f| live.points(f);
+        coverage.gather(&own.removed, corners, self.reach, &mut own.trial);
+        let fan = patch.added.iter().map(|f| patch.after(live, f));
+        let (removed, added) = (&own.removed, &own.added);
+        own.trial
+            .assign(removed, added, fan, self.reach, &mut self.change)
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        if let Some(coverage) = &mut self.coverage {
+            coverage.apply(&self.change);
+        }
+        self.memoryless.committed(live, patch);
+    }
+
+    fn looks_ahead(&self) -> usize {
+        AHEAD
+    }
+
+    fn shared_batch(&self) -> usize {
+        2
+    }
+}
