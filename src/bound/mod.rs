@@ -5,3 +5,4 @@
 //! claims.
 
 pub mod cell;
+pub mod point;

@@ -24,6 +24,7 @@ mod metric_surface;
 mod oracle;
 mod output;
 mod planted_bugs;
+mod point_bounds;
 mod polish;
 mod quadric;
 mod raster;
