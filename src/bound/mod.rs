@@ -3,3 +3,5 @@
 //! Eisemann & Décoret 2007 bound the angle under which a viewer in a view cell can see the difference; Cox &
 //! Chibelushi 2005 keep a collapse inside a tolerance volume. A verifier that shares no code with either checks their
 //! claims.
+
+pub mod planar;
