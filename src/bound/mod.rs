@@ -4,4 +4,5 @@
 //! Chibelushi 2005 keep a collapse inside a tolerance volume. A verifier that shares no code with either checks their
 //! claims.
 
+pub mod cell;
 pub mod planar;

@@ -35,6 +35,7 @@ mod streams;
 mod tiles;
 mod unrender;
 mod view;
+mod view_cell;
 mod visibility;
 mod zbuffer;
 

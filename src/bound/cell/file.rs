@@ -1,0 +1,180 @@
+//! The JSON cell file: one view cell.
+//!
+//! ```json
+//! {"schema": 1, "cell": {"segment": [[-1, 0, 5], [1, 0, 5]]}}
+//! ```
+//! | cell | value |
+//! |---|---|
+//! | `point` | `[x, y, z]` |
+//! | `segment` | two points |
+//! | `line` | `{"point": [x, y, z], "direction": [x, y, z]}` |
+//! | `polygon` | 3 to 64 points: the corners of a convex polygon in order |
+//! | `plane` | `{"point": [x, y, z], "normal": [x, y, z]}` |
+//! | `polyhedron` | 4 to 64 points: the cell is their convex hull |
+//! | `box` | `{"low": [x, y, z], "high": [x, y, z]}`, sides along the axes |
+//! | `half_space` | `{"point": [x, y, z], "normal": [x, y, z]}`: viewers are on the side that the normal points away from |
+//!
+//! Positions are in the units of the mesh file. Directions and normals may have any length but 0. Numbers are written
+//! with the digits that give the same double back; a box is written as a polyhedron.
+
+use std::{fs::File, io::Read, path::Path};
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Shape, ViewCell};
+use crate::{Error, Result};
+
+/// The version of the schema that this crate reads and writes.
+pub const SCHEMA: u32 = 1;
+
+/// Largest cell file that is read, in bytes: 64 corners take some 4 kB.
+const SIZE_LIMIT: u64 = 1 << 20;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRecord {
+    schema: u32,
+    cell: CellRecord,
+}
+
+/// A cell as the file has it.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum CellRecord {
+    Point([f64; 3]),
+    Segment([[f64; 3]; 2]),
+    Line {
+        point: [f64; 3],
+        direction: [f64; 3],
+    },
+    Polygon(Vec<[f64; 3]>),
+    Plane {
+        point: [f64; 3],
+        normal: [f64; 3],
+    },
+    Polyhedron(Vec<[f64; 3]>),
+    Box {
+        low: [f64; 3],
+        high: [f64; 3],
+    },
+    HalfSpace {
+        point: [f64; 3],
+        normal: [f64; 3],
+    },
+}
+
+impl Serialize for ViewCell {
+    /// As in a cell file: `{"segment": [...]}`.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        CellRecord::of(self).serialize(serializer)
+    }
+}
+
+/// The text of the cell file for `cell`. Equal cells give equal text.
+///
+/// # Errors
+/// [`Error::Internal`] where the cell has no JSON form; there is none like that.
+pub fn to_json(cell: &ViewCell) -> Result<String> {
+    let record = FileRecord {
+        schema: SCHEMA,
+        cell: CellRecord::of(cell),
+    };
+    let mut text = serde_json::to_string_pretty(&record)
+        .map_err(|e| Error::Internal(format!("a cell as JSON: {e}")))?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// The cell in the text of a cell file; `path` is named in errors.
+///
+/// # Errors
+/// [`Error::Input`]: another schema, missing or unknown fields, or what the constructors of [`ViewCell`] refuse.
+pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewCell> {
+    let path = path.as_ref();
+    let refused = |what: String| Error::input(path, what);
+    // The version first: a later schema fails with its number, not with a field this version does not know.
+    #[derive(Deserialize)]
+    struct Version {
+        schema: u32,
+    }
+    let version: Version = serde_json::from_str(text)
+        .map_err(|e| refused(format!("{e}; expected a cell file (JSON)")))?;
+    if version.schema != SCHEMA {
+        return Err(refused(format!(
+            "schema {}; this version reads schema {SCHEMA}",
+            version.schema
+        )));
+    }
+    let record: FileRecord = serde_json::from_str(text).map_err(|e| refused(e.to_string()))?;
+    record.cell.check().map_err(|e| refused(e.to_string()))
+}
+
+/// Reads a cell file; positions in units of the mesh file (see [`ViewCell::enter_frame`]).
+///
+/// # Errors
+/// [`Error::Io`], or as [`from_json`].
+pub fn read(path: impl AsRef<Path>) -> Result<ViewCell> {
+    let path = path.as_ref();
+    let mut bytes = Vec::new();
+    // By what is read, not by what is claimed: a pipe or device has no size.
+    File::open(path)
+        .and_then(|file| file.take(SIZE_LIMIT + 1).read_to_end(&mut bytes))
+        .map_err(|e| Error::io("read", path, e))?;
+    if bytes.len() as u64 > SIZE_LIMIT {
+        return Err(Error::input(
+            path,
+            format!("more than {SIZE_LIMIT} bytes; expected a cell file of at most that"),
+        ));
+    }
+    let text = std::str::from_utf8(&bytes)
+        .map_err(|e| Error::input(path, format!("{e}; expected a cell file (JSON)")))?;
+    from_json(text, path)
+}
+
+impl CellRecord {
+    fn of(cell: &ViewCell) -> Self {
+        let all = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect();
+        match cell.shape() {
+            Shape::Point(at) => Self::Point(at.to_array()),
+            Shape::Segment(ends) => Self::Segment(ends.map(|e| e.to_array())),
+            Shape::Line { point, direction } => Self::Line {
+                point: point.to_array(),
+                direction: direction.to_array(),
+            },
+            Shape::Polygon { corners, .. } => Self::Polygon(all(corners)),
+            Shape::Plane { point, normal } => Self::Plane {
+                point: point.to_array(),
+                normal: normal.to_array(),
+            },
+            Shape::Polyhedron { corners, .. } => Self::Polyhedron(all(corners)),
+            Shape::HalfSpace { point, normal } => Self::HalfSpace {
+                point: point.to_array(),
+                normal: normal.to_array(),
+            },
+        }
+    }
+
+    fn check(&self) -> Result<ViewCell> {
+        let all = |points: &[[f64; 3]]| -> Vec<DVec3> {
+            points.iter().map(|&p| DVec3::from_array(p)).collect()
+        };
+        let [a, b] = match self {
+            Self::Point(at) => return ViewCell::point(DVec3::from_array(*at)),
+            Self::Polygon(corners) => return ViewCell::polygon(&all(corners)),
+            Self::Polyhedron(corners) => return ViewCell::polyhedron(&all(corners)),
+            Self::Segment(ends) => *ends,
+            Self::Line { point, direction } => [*point, *direction],
+            Self::Plane { point, normal } | Self::HalfSpace { point, normal } => [*point, *normal],
+            Self::Box { low, high } => [*low, *high],
+        }
+        .map(DVec3::from_array);
+        match self {
+            Self::Line { .. } => ViewCell::line(a, b),
+            Self::Plane { .. } => ViewCell::plane(a, b),
+            Self::HalfSpace { .. } => ViewCell::half_space(a, b),
+            Self::Box { .. } => ViewCell::cuboid(a, b),
+            _ => ViewCell::segment([a, b]),
+        }
+    }
+}
