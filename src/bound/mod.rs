@@ -5,4 +5,5 @@
 //! claims.
 
 pub mod cell;
+pub mod planar;
 pub mod point;

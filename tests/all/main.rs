@@ -23,6 +23,7 @@ mod metric;
 mod metric_surface;
 mod oracle;
 mod output;
+mod planar;
 mod planted_bugs;
 mod point_bounds;
 mod polish;

@@ -13,7 +13,7 @@ fn at(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 fn aperture(radians: f64) -> Aperture {
-    Aperture::new(radians).expect("in range")
+    Aperture::radians(radians).expect("in range")
 }
 
 #[track_caller]
@@ -444,11 +444,11 @@ fn angle_between(v: DVec3, a: DVec3, b: DVec3) -> f64 {
 #[test]
 fn an_angle_of_90_degrees_or_more_or_below_0_is_refused() {
     for degrees in [90.0, 180.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = Aperture::from_degrees(degrees).expect_err("out of range");
+        let error = Aperture::degrees(degrees).expect_err("out of range");
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("less than 90"), "{error}");
     }
-    assert!(Aperture::from_degrees(89.999_999).is_ok());
+    assert!(Aperture::degrees(89.999_999).is_ok());
 }
 
 #[test]

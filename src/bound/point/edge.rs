@@ -76,7 +76,7 @@ impl Edge {
     ) -> Option<DVec3> {
         let edge = self.from_foot_of(point);
         let ridge = Ridge::new(&edge, point, axis);
-        let (sine, cosine) = (aperture.sine(), aperture.cosine());
+        let (sine, cosine) = (aperture.sin(), aperture.cos());
         let limit = |s: f64| 1.0 / viewpoint::extent_from(edge.at(s), point, axis, aperture);
         // Where it is limited at all it is at an end: the denominator of the extent is convex along the line.
         let mut best = (0.0, f64::NAN);

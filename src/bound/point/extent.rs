@@ -47,7 +47,7 @@ pub fn extent(cell: &ViewCell, point: DVec3, direction: DVec3, aperture: Apertur
         aperture,
         found: unbounded,
     };
-    if aperture.sine() > 0.0 {
+    if aperture.sin() > 0.0 {
         ask(cell, &mut least);
         return least.found;
     }

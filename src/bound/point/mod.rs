@@ -4,7 +4,6 @@
 //! [`extent`] is the boundary of the validity region in a direction, [`error`] equation 1 for a given pair. Both come
 //! with the viewpoint that decides, the *max viewpoint*, so that a user can look from there.
 
-mod aperture;
 mod candidates;
 mod edge;
 mod error;
@@ -12,7 +11,7 @@ mod extent;
 mod plane;
 mod viewpoint;
 
-pub use aperture::Aperture;
+pub use super::planar::Aperture;
 pub use error::{PointError, error};
 pub use extent::{Extent, extent};
 pub use viewpoint::{angle_from, extent_from};

@@ -5,10 +5,13 @@
 //! across the plane the max viewpoints form a circle, of which one point is given: if the circle meets the border of a
 //! polygon the border's own search finds it. Deviation: equation 8 is not used; extents are those of the viewpoint.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Aperture;
-use crate::num::math::{length, sqrt, unit};
+use crate::{
+    bound::planar::tangents,
+    num::math::{length, sqrt, unit},
+};
 
 /// Seen from a point on one side of a plane: its foot, its height above the plane, the direction of a projected vector.
 struct Section {
@@ -53,12 +56,9 @@ pub(super) fn max_viewpoints(
 ) -> [Option<DVec3>; 2] {
     let section = Section::new(origin, normal, point, direction);
     let [along, up] = section.axis;
-    let (sine, cosine) = (aperture.sine(), aperture.cosine());
-    [1.0, -1.0].map(|side: f64| {
-        let denominator = side * cosine * along - sine * up + 1.0;
-        let x = section.height * (sine * along + side * cosine * up) / denominator;
-        // A denominator of 0 puts it at infinity, where nothing is limited.
-        (section.height > 0.0 && x.is_finite()).then(|| section.foot + section.along * x)
+    tangents(DVec2::new(along, up), aperture).map(|tangent| {
+        let x = section.height * tangent?.offset;
+        (section.height > 0.0).then(|| section.foot + section.along * x)
     })
 }
 

@@ -36,7 +36,7 @@ pub fn extent_from(viewpoint: DVec3, point: DVec3, direction: DVec3, aperture: A
     if squared <= 0.0 {
         return 0.0;
     }
-    if aperture.sine() <= 0.0 {
+    if aperture.sin() <= 0.0 {
         // Only moves along the ray are not seen at all, and those end at the viewer.
         return match across > 0.0 {
             true => 0.0,
@@ -44,9 +44,9 @@ pub fn extent_from(viewpoint: DVec3, point: DVec3, direction: DVec3, aperture: A
             false => f64::INFINITY,
         };
     }
-    let denominator = across * aperture.cosine() - along * aperture.sine();
+    let denominator = across * aperture.cos() - along * aperture.sin();
     if denominator > 0.0 {
-        squared * aperture.sine() / denominator
+        squared * aperture.sin() / denominator
     } else {
         f64::INFINITY
     }
