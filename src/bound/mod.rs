@@ -5,5 +5,9 @@
 //! claims.
 
 pub mod cell;
+pub mod heuristics;
 pub mod planar;
 pub mod point;
+pub mod region;
+pub mod surface;
+pub mod switch;

@@ -8,6 +8,7 @@ macro_rules! answer {
 }
 
 mod answers;
+mod bound;
 mod check;
 mod check_rays;
 mod compare;
@@ -74,6 +75,8 @@ enum Command {
     Compare(compare::Options),
     Visibility(visibility::Options),
     MergeVisibility(visibility::MergeOptions),
+    Bound(bound::Options),
+    BoundRegion(bound::RegionOptions),
     Check(check::Options),
     CheckRays(check_rays::Options),
     Inspect(inspect::Options),
@@ -87,7 +90,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["bound", "verify", "lod"];
+const NOT_BUILT: &[&str] = &["verify", "lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,6 +148,8 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Visibility(options) => visibility::run(&options, common, &terminal),
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
+        Command::Bound(options) => bound::run(&options, common, &terminal),
+        Command::BoundRegion(options) => bound::run_region(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),

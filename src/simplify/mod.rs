@@ -10,6 +10,7 @@ pub mod memoryless;
 mod options;
 mod outcome;
 pub mod quadric;
+mod replacement;
 mod run;
 pub mod visibility;
 
@@ -17,4 +18,5 @@ pub mod visibility;
 pub use crate::collapse::{History, Replay};
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
+pub use replacement::{NearestTriangle, originals};
 pub use run::{simplify, simplify_guided};

@@ -251,8 +251,8 @@ fn what_is_planned_but_not_built_ends_with_4() {
         "view-bounded",
     ];
     for words in [
-        &["bound", "a", "b"][..],
-        &["verify", "a", "b"],
+        &["verify", "a", "b"][..],
+        &["lod", "a", "b"],
         &method,
         &gltf,
     ] {
