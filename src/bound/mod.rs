@@ -6,3 +6,4 @@
 
 pub mod cell;
 pub mod planar;
+pub mod point;

@@ -25,6 +25,7 @@ mod oracle;
 mod output;
 mod planar;
 mod planted_bugs;
+mod point_bounds;
 mod polish;
 mod quadric;
 mod raster;
