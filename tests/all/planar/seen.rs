@@ -42,31 +42,70 @@ pub fn largest(f: impl Fn(f64) -> f64, samples: u32) -> (f64, f64) {
     best
 }
 
-/// The largest value of `f` on the unit square that sampling finds, refined around the best sample, and where it is.
-pub fn largest_of_two(f: impl Fn(f64, f64) -> f64, samples: u32) -> (f64, [f64; 2]) {
-    let mut best = (f64::NEG_INFINITY, [0.0; 2]);
-    let mut window = [[0.0, 1.0]; 2];
-    let mut count = samples;
-    for _ in 0..14 {
-        let at = |k: usize, i: u32| {
-            window[k][0] + (window[k][1] - window[k][0]) * f64::from(i) / f64::from(count)
-        };
-        let mut found = best;
-        for i in 0..=count {
-            for j in 0..=count {
-                let (s, t) = (at(0, i), at(1, j));
-                let value = f(s, t);
-                if value > found.0 {
-                    found = (value, [s, t]);
-                }
+/// The largest value of `f` on the unit square that sampling finds, refined around the `starts` best local maxima of a
+/// grid of so many steps each way (0: that parameter changes nothing), and where it is.
+pub fn largest_of_two(
+    f: impl Fn(f64, f64) -> f64,
+    steps: [u32; 2],
+    starts: usize,
+) -> (f64, [f64; 2]) {
+    let (rows, columns) = (steps[0] as usize + 1, steps[1] as usize + 1);
+    let at = |i: usize, n: usize| {
+        if n == 1 {
+            0.0
+        } else {
+            i as f64 / (n - 1) as f64
+        }
+    };
+    let mut grid = Vec::with_capacity(rows * columns);
+    for i in 0..rows {
+        for j in 0..columns {
+            grid.push(f(at(i, rows), at(j, columns)));
+        }
+    }
+    let mut peaks = Vec::new();
+    for i in 0..rows {
+        for j in 0..columns {
+            let value = grid[i * columns + j];
+            let (top, left) = (i.saturating_sub(1), j.saturating_sub(1));
+            let around = (top..(i + 2).min(rows))
+                .flat_map(|k| (left..(j + 2).min(columns)).map(move |l| k * columns + l));
+            if around.map(|k| grid[k]).all(|other| other <= value) {
+                peaks.push((value, [at(i, rows), at(j, columns)]));
             }
         }
-        best = found;
-        for k in 0..2 {
-            let half = (window[k][1] - window[k][0]) / f64::from(count) * 1.5;
-            window[k] = [(best.1[k] - half).max(0.0), (best.1[k] + half).min(1.0)];
+    }
+    peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut best = peaks[0];
+    for &peak in peaks.iter().take(starts) {
+        let mut here = peak;
+        let mut half = [1.0 / steps[0].max(1) as f64, 1.0 / steps[1].max(1) as f64];
+        for _ in 0..40 {
+            let before = here.0;
+            let centre = here.1;
+            for i in -2..=2 {
+                for j in -2..=2 {
+                    if steps[0] == 0 && i != 0 {
+                        continue;
+                    }
+                    let s = (centre[0] + half[0] * f64::from(i) / 2.0).clamp(0.0, 1.0);
+                    let t = (centre[1] + half[1] * f64::from(j) / 2.0).clamp(0.0, 1.0);
+                    let value = f(s, t);
+                    if value > here.0 {
+                        here = (value, [s, t]);
+                    }
+                }
+            }
+            // A ridge is followed as long as it rises.
+            let shrink = if here.0 > before { 0.85 } else { 0.4 };
+            half = half.map(|h| h * shrink);
+            if half[0].max(half[1]) < 1e-8 {
+                break;
+            }
         }
-        count = 8;
+        if here.0 > best.0 {
+            best = here;
+        }
     }
     best
 }
