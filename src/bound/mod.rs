@@ -5,9 +5,11 @@
 //! claims.
 
 pub mod cell;
+pub mod correspondence;
 pub mod heuristics;
 pub mod planar;
 pub mod point;
 pub mod region;
 pub mod surface;
 pub mod switch;
+pub mod verify;

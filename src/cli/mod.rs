@@ -23,6 +23,8 @@ mod selfcheck;
 mod simplify;
 mod source;
 mod terminal;
+mod verify;
+mod view_bound;
 mod visibility;
 
 use std::{
@@ -77,6 +79,7 @@ enum Command {
     MergeVisibility(visibility::MergeOptions),
     Bound(bound::Options),
     BoundRegion(bound::RegionOptions),
+    Verify(verify::Options),
     Check(check::Options),
     CheckRays(check_rays::Options),
     Inspect(inspect::Options),
@@ -90,7 +93,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["verify", "lod"];
+const NOT_BUILT: &[&str] = &["lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +153,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
         Command::Bound(options) => bound::run(&options, common, &terminal),
         Command::BoundRegion(options) => bound::run_region(&options, common, &terminal),
+        Command::Verify(options) => verify::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),

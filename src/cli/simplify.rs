@@ -5,10 +5,12 @@ use std::{io::Write, path::PathBuf};
 use clap::{ArgGroup, ValueEnum};
 use serde::Serialize;
 
-use super::{Common, Verdict, guidance::Guidance, report, source, terminal::Terminal};
+use super::{
+    Common, Verdict, guidance::Guidance, report, source, terminal::Terminal, view_bound::ViewBound,
+};
 use crate::{
     Error, Result,
-    collapse::{Schedule, Topology},
+    collapse::{Refusal, Schedule, Topology},
     io,
     mesh::{self, content_sha256},
     simplify::{
@@ -87,6 +89,8 @@ pub(super) struct Options {
     probabilistic: bool,
     #[command(flatten)]
     guidance: Guidance,
+    #[command(flatten)]
+    view_bound: ViewBound,
     /// Write the history of collapses, moves and flips, for `lodmark replay`
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -112,8 +116,7 @@ enum Method {
     /// Within a tolerance volume (not built yet)
     #[value(hide = true)]
     Tolerance,
-    /// Within an angle for a view cell (not built yet)
-    #[value(hide = true)]
+    /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007)
     ViewBounded,
 }
 
@@ -205,10 +208,14 @@ impl Options {
         let target = match (self.triangles, self.ratio) {
             (Some(n), _) => Amount::Triangles(n),
             (None, Some(r)) => Amount::Ratio(r),
-            (None, None) if self.error_rms.is_some() => Amount::ErrorOnly,
+            (None, None) if self.error_rms.is_some() || self.view_bound.has_error() => {
+                Amount::ErrorOnly
+            }
             (None, None) => {
                 return Err(Error::Usage(
-                    "no target; give --triangles N, --ratio R or --error-rms LEVELS".into(),
+                    "no target; give --triangles N, --ratio R or an error that the method honours: --error-rms LEVELS, \
+                     --error-deg DEGREES or --error-px PIXELS"
+                        .into(),
                 ));
             }
         };
@@ -226,9 +233,10 @@ impl Options {
                 quadric: self.quadric(),
                 ..self.guidance.options()
             }),
-            Method::Tolerance | Method::ViewBounded => {
+            Method::ViewBounded => MethodOptions::ViewBounded(self.view_bound.options()?),
+            Method::Tolerance => {
                 return Err(Error::Unsupported(format!(
-                    "the method `{}` is not built yet; use image, memoryless, quadric or visibility",
+                    "the method `{}` is not built yet; use image, memoryless, quadric, visibility or view-bounded",
                     self.method
                         .to_possible_value()
                         .map_or_else(String::new, |v| v.get_name().to_string())
@@ -241,6 +249,7 @@ impl Options {
             MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
             MethodOptions::Quadric(_) => RunOptions::quadric(target),
             MethodOptions::Visibility(_) => RunOptions::visibility(target),
+            MethodOptions::ViewBounded(ref own) => RunOptions::view_bounded(own.clone(), target),
         };
         options.method = method;
         options.error_rms = self.error_rms;
@@ -310,11 +319,15 @@ impl Options {
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
         let guidance = self.guidance.given();
+        let bound = self.view_bound.given();
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance].concat(),
-            MethodOptions::Memoryless(_) => &[image.as_slice(), &quadric, &guidance].concat(),
-            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance].concat(),
-            MethodOptions::Visibility(_) => &image,
+            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &bound].concat(),
+            MethodOptions::Memoryless(_) => {
+                &[image.as_slice(), &quadric, &guidance, &bound].concat()
+            }
+            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &bound].concat(),
+            MethodOptions::Visibility(_) => &[image.as_slice(), &bound].concat(),
+            MethodOptions::ViewBounded(_) => &[image.as_slice(), &quadric, &guidance].concat(),
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(Error::Usage(format!(
@@ -350,6 +363,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let outputs = [
         Some(&options.output),
         options.history.as_ref(),
+        options.view_bound.output(),
         common.json.as_ref(),
     ];
     source::require_outputs(outputs.into_iter().flatten())?;
@@ -370,7 +384,10 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         None => simplify(&canonical.mesh, &resolved, terminal)?,
     };
     tell(options, triangles_in, &outcome, terminal);
-    if options.strict && !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput) {
+    let bounded = matches!(outcome.options.method, MethodOptions::ViewBounded(_))
+        && outcome.options.target == Amount::ErrorOnly;
+    let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
+    if options.strict && short && !bounded {
         return Err(Error::TargetNotReached(format!(
             "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
             outcome.mesh.triangles().len()
@@ -383,6 +400,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         let bytes = outcome.history.to_bytes();
         io::atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
     }
+    options.view_bound.write(&canonical.mesh, &outcome)?;
     let summary = Summary {
         input: &options.input,
         output: &options.output,
@@ -461,6 +479,12 @@ fn tell(options: &Options, triangles_in: usize, outcome: &Outcome, terminal: &Te
             options.input.display()
         )),
         Stop::ErrorLimit => terminal.say("stopped at the error limit"),
+        Stop::NoLegalCollapse { refusals } if refusals.count(Refusal::Bound) > 0 => {
+            terminal.say(&format!(
+                "stopped with {} triangles: every collapse that is left breaks the bound or a rule ({refusals})",
+                outcome.mesh.triangles().len()
+            ));
+        }
         Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
             "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
             outcome.mesh.triangles().len()

@@ -110,6 +110,10 @@ refusals! {
     Mirror => "mirror",
     /// The method itself refuses.
     Method => "method",
+    /// The faces before cannot be mapped onto the faces after: no disc, or folded.
+    Unmapped => "unmapped",
+    /// A point would be farther from what stands for it than is allowed.
+    Bound => "bound",
 }
 
 /// How often each rule refused.

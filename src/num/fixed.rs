@@ -91,6 +91,43 @@ pub const fn luma(rgb: [u8; 3]) -> u8 {
     ((19_595 * rgb[0] as u32 + 38_470 * rgb[1] as u32 + 7_471 * rgb[2] as u32 + 32_768) >> 16) as u8
 }
 
+/// The weights of the second and third corner at a point of a triangle, in units of 2^-31: exact at the corners and at
+/// midpoints of sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Weights31([u32; 2]);
+
+impl Weights31 {
+    /// The weight 1.
+    pub const ONE: u32 = 1 << 31;
+
+    /// The nearest weights that are not negative and have a sum of at most 1; NaN counts as 0.
+    #[must_use]
+    pub fn new([u, v]: [f64; 2]) -> Self {
+        let fixed = |x: f64| (x.clamp(0.0, 1.0) * f64::from(Self::ONE)).round() as u32;
+        let u = fixed(u);
+        Self([u, fixed(v).min(Self::ONE - u)])
+    }
+
+    /// As numbers from 0 to 1.
+    #[must_use]
+    pub fn get(self) -> [f64; 2] {
+        self.0.map(|x| f64::from(x) / f64::from(Self::ONE))
+    }
+
+    /// In units of 2^-31.
+    #[must_use]
+    pub const fn bits(self) -> [u32; 2] {
+        self.0
+    }
+
+    /// From units of 2^-31; `None` where the weights have a sum above 1.
+    #[must_use]
+    pub fn from_bits(bits: [u32; 2]) -> Option<Self> {
+        let sum = u64::from(bits[0]) + u64::from(bits[1]);
+        (sum <= u64::from(Self::ONE)).then_some(Self(bits))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

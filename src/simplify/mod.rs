@@ -12,6 +12,7 @@ mod outcome;
 pub mod quadric;
 mod replacement;
 mod run;
+pub mod view_bounded;
 pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.

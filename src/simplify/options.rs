@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions,
-    visibility::VisibilityOptions,
+    view_bounded::ViewBoundedOptions, visibility::VisibilityOptions,
 };
 use crate::{
     Error, Result,
@@ -58,6 +58,8 @@ pub enum MethodOptions {
     Quadric(QuadricOptions),
     /// Zhang & Turk 2002.
     Visibility(VisibilityOptions),
+    /// Within an angle for the viewers in a cell.
+    ViewBounded(ViewBoundedOptions),
 }
 
 impl MethodOptions {
@@ -69,6 +71,7 @@ impl MethodOptions {
             Self::Memoryless(_) => "memoryless",
             Self::Quadric(_) => "quadric",
             Self::Visibility(_) => "visibility",
+            Self::ViewBounded(_) => "view-bounded",
         }
     }
 }
@@ -136,6 +139,14 @@ impl Options {
         )
     }
 
+    /// View-bounded simplification: as far as the angle lets it, or down to `target`.
+    #[must_use]
+    pub fn view_bounded(own: ViewBoundedOptions, target: Amount) -> Self {
+        let mut options = Self::new(MethodOptions::ViewBounded(own), target);
+        options.rules.normal_cosine = 0.05;
+        options
+    }
+
     /// Only images need a guard against folds: Gouraud shading cannot see them. For the methods that measure distances it
     /// cost 3 to 4 % of flat RMS on the dragon at 8,191 triangles, so there it is off.
     fn new(method: MethodOptions, target: Amount) -> Self {
@@ -181,7 +192,10 @@ impl Options {
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
         match (self.error_rms, &self.method) {
-            (None, _) if self.target == Amount::ErrorOnly => {
+            (None, method)
+                if self.target == Amount::ErrorOnly
+                    && !matches!(method, MethodOptions::ViewBounded(_)) =>
+            {
                 return Err(Error::Usage(
                     "no target; expected a number of triangles, a ratio or an error".into(),
                 ));
@@ -199,6 +213,7 @@ impl Options {
             MethodOptions::Image(image) => image.check(),
             MethodOptions::Memoryless(m) => within("volume-weight", m.volume_weight, 0.0, 1.0),
             MethodOptions::Quadric(q) => check_quadric(q),
+            MethodOptions::ViewBounded(v) => v.check(),
             MethodOptions::Visibility(v) => {
                 within("tie-weight", v.tie_weight, 0.0, 1.0)?;
                 v.measure.check()?;

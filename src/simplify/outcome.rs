@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{Options, image::PolishCounters};
 use crate::{
+    bound::correspondence::Correspondence,
     collapse::{Counters, History, Refusals},
     mesh::Mesh,
 };
@@ -55,6 +56,9 @@ pub struct Outcome {
     pub options: Options,
     /// V(M), the visibility of the input in [0, 1]; only for the method that is guided by it.
     pub v_mesh: Option<f64>,
+    /// What became of every point of the input, by triangles of the input and of `mesh`; only for methods that keep
+    /// account of it.
+    pub correspondence: Option<Correspondence>,
     /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at
     /// images. Never a measure of quality: the run has minimised it.
     pub error_rms: Option<f64>,

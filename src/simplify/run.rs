@@ -8,10 +8,12 @@ use super::{
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
+    view_bounded::{ViewBounded, ViewBoundedOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };
 use crate::{
     Error, Progress, Result,
+    bound::correspondence::Correspondence,
     collapse::{
         Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
     },
@@ -82,6 +84,10 @@ fn in_pool(
     let triangles = options.target.triangles(mesh.triangles().len())?;
     let mut run = Run::new(mesh, options, progress);
     if mesh.triangles().len() <= triangles {
+        if matches!(options.method, MethodOptions::ViewBounded(_)) {
+            let all = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+            run.correspondence = Some(Correspondence::identity(all.collect()));
+        }
         return run.finish(Stop::TargetAboveInput);
     }
     let target = Target { triangles };
@@ -99,6 +105,7 @@ fn in_pool(
             EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
         },
         MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
+        MethodOptions::ViewBounded(own) => run.view_bounded(own, target)?,
     };
     run.finish(match end {
         End::TargetReached => Stop::TargetReached,
@@ -117,6 +124,7 @@ struct Run<'a> {
     v_mesh: Option<f64>,
     polish: Option<PolishCounters>,
     error_rms: Option<f64>,
+    correspondence: Option<Correspondence>,
     progress: &'a dyn Progress,
 }
 
@@ -132,6 +140,7 @@ impl<'a> Run<'a> {
             v_mesh: None,
             polish: None,
             error_rms: None,
+            correspondence: None,
             progress,
         }
     }
@@ -273,6 +282,15 @@ impl<'a> Run<'a> {
         Ok(self.thinned("visibility", method, target)?.0)
     }
 
+    /// Eisemann & Décoret 2007: within an angle for all viewers in a cell.
+    fn view_bounded(&mut self, own: &ViewBoundedOptions, target: Target) -> Result<End> {
+        let method = ViewBounded::new(&self.live, own, self.progress)?;
+        let before = (self.live.triangle_count(), Counters::default());
+        let (end, method) = self.phase("view-bounded", method, target, before)?;
+        self.correspondence = Some(method.into_correspondence(&self.live)?);
+        Ok(end)
+    }
+
     fn finish(self, stop: Stop) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
@@ -289,6 +307,7 @@ impl<'a> Run<'a> {
             options: self.options,
             v_mesh: self.v_mesh,
             error_rms: self.error_rms,
+            correspondence: self.correspondence,
         })
     }
 }

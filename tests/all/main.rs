@@ -36,6 +36,7 @@ mod shapes;
 mod streams;
 mod tiles;
 mod unrender;
+mod verify;
 mod view;
 mod view_cell;
 mod visibility;

@@ -408,6 +408,8 @@ fn no_sampled_viewpoint_beats_a_claimed_error() {
             let moved = point + direction * libm::pow(10.0, -6.0 * random.unit() + 1.0);
             let told = format!("{class} {case}: {cell:?} {point} {moved}");
             let found = error(&cell, point, moved);
+            // Positions are rounded, which a viewer close to them sees.
+            let noise = 1e-14 / cell.distance_to_hull(&[point, moved]).max(1e-14);
             let sampler = Sampler { cell: &cell };
             if let Some(from) = found.viewpoint {
                 assert!(
@@ -416,7 +418,7 @@ fn no_sampled_viewpoint_beats_a_claimed_error() {
                 );
                 let claimed = angle_between(from, point, moved);
                 assert!(
-                    (claimed - found.radians).abs() <= 1e-7 * claimed + 1e-12,
+                    (claimed - found.radians).abs() <= 1e-7 * claimed + noise,
                     "{told}: {claimed} from {from}"
                 );
             } else {
@@ -427,7 +429,7 @@ fn no_sampled_viewpoint_beats_a_claimed_error() {
                 worst = worst.max(seen / found.radians - 1.0);
             }
             assert!(
-                seen <= found.radians * (1.0 + 1e-7) + 1e-12,
+                seen <= found.radians * (1.0 + 1e-7) + noise,
                 "{told}: {seen} above {found:?}"
             );
         }

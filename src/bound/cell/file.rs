@@ -71,6 +71,14 @@ impl Serialize for ViewCell {
     }
 }
 
+impl<'de> Deserialize<'de> for ViewCell {
+    /// As in a cell file; what the constructors refuse is an error.
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let record = CellRecord::deserialize(deserializer)?;
+        record.check().map_err(serde::de::Error::custom)
+    }
+}
+
 /// The text of the cell file for `cell`. Equal cells give equal text.
 ///
 /// # Errors

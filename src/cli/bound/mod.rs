@@ -13,10 +13,12 @@ use crate::{
     Error, Result,
     bound::{
         cell::file,
+        correspondence,
         heuristics::{self, Claims},
-        surface::{self, Effort, Measure, SurfaceBound},
+        surface::{self, Effort, Given, Measure, Pair, SurfaceBound},
     },
-    mesh::Mesh,
+    io,
+    mesh::{self, Mesh},
     num::Frame,
     simplify::{NearestTriangle, originals},
     view::frame_of,
@@ -32,7 +34,7 @@ The guarantee: for every point of REF, not only its vertices, there is a point o
 more than so many degrees away from it. The points are those of the nearest triangle: REF is cut into parts, each goes \
 to the triangle of LOW that is nearest to its centroid, each corner to the nearest point of that triangle. Neighbouring \
 parts may go apart: the guarantee is about where points are seen, and says nothing of cracks or of what is in front. \
-It holds one way; exchange REF and LOW for the other. A mesh without triangles is a point cloud.
+It holds one way; exchange REF and LOW for the other. A mesh without triangles is a point cloud. With --correspondence the map is the recorded one, which moves no two neighbours apart.
 
 A cell file holds {\"schema\": 1, \"cell\": {KIND: ...}} with one of point: [x, y, z], segment: [A, B], line: {point, \
 direction}, polygon: [A, B, C, ...], plane: {point, normal}, polyhedron: [A, B, C, D, ...] (their convex hull), box: \
@@ -51,6 +53,10 @@ pub(super) struct Options {
     /// Where viewers may be: a JSON cell file, in the units of REF
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
+    /// Which part of LOW stands for which part of REF, as `lodmark simplify --bound-out` wrote it: the guarantee then holds
+    /// for that map, which is continuous, instead of the nearest triangle
+    #[arg(long, value_name = "FILE", requires = "cell")]
+    correspondence: Option<PathBuf>,
     /// By what share the guarantee may exceed what is attained, 0.0001 to 1 [default: 0.01]
     #[arg(long, value_name = "SHARE", default_value_t = Effort::default().precision, hide_default_value = true, allow_negative_numbers = true)]
     precision: f64,
@@ -95,6 +101,7 @@ struct WorstPoint {
     point: [f64; 3],
     replacement: [f64; 3],
     viewpoint: Option<[f64; 3]>,
+    /// Of the file; with a correspondence, of the mesh in canonical order.
     triangle: u32,
 }
 
@@ -129,9 +136,14 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     };
     let framed = cell.as_ref().map(|cell| cell.enter_frame(frame));
     let measured = |measure| surface::measure(originals(&own), &nearest, measure, effort, terminal);
+    let recorded = options.recorded(&reference, &low, frame)?;
     let mut found = None;
     if let Some(cell) = &framed {
-        let bound = measured(Measure::Angle(cell))?;
+        let angle = Measure::Angle(cell);
+        let bound = match recorded {
+            Some(pairs) => surface::measure(pairs, &Given, angle, effort, terminal)?,
+            None => measured(angle)?,
+        };
         let claims = options
             .heuristics
             .then(|| heuristics::claims(&own, &other, &nearest, cell));
@@ -145,7 +157,12 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
                 terminal,
             )?;
         }
-        found = Some(Found::new(&bound, claims, frame));
+        found = Some(Found::new(
+            &bound,
+            claims,
+            frame,
+            options.correspondence.is_some(),
+        ));
     }
     let switch = aperture
         .map(|aperture| {
@@ -158,7 +175,8 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         common,
         "bound",
         serde_json::json!({
-            "reference": options.reference, "low": options.low, "cell": cell, "precision": options.precision,
+            "reference": options.reference, "low": options.low, "cell": cell,
+            "correspondence": options.correspondence, "precision": options.precision,
             "pieces": options.pieces, "pictures": options.pictures, "size": options.size,
             "heuristics": options.heuristics, "switch": options.switch,
         }),
@@ -194,6 +212,27 @@ impl Options {
         }
         Ok(())
     }
+
+    /// The recorded map in units of `frame`, where there is one.
+    fn recorded(&self, reference: &Mesh, low: &Mesh, frame: Frame) -> Result<Option<Vec<Pair>>> {
+        let Some(path) = &self.correspondence else {
+            return Ok(None);
+        };
+        let bytes = io::bytes::read(path)?;
+        let original = mesh::canonical(reference).mesh;
+        let pairs = correspondence::pairs(&bytes, path, &original, low)?.ok_or_else(|| {
+            Error::input(
+                path,
+                format!("does not belong to {}", self.reference.display()),
+            )
+        })?;
+        let inside = |pair: Pair| Pair {
+            from: pair.from.map(|p| frame.enter(p)),
+            to: pair.to.map(|p| frame.enter(p)),
+            ..pair
+        };
+        Ok(Some(pairs.into_iter().map(inside).collect()))
+    }
 }
 
 /// The frame of a mesh, or of its vertices where it has no triangles.
@@ -208,7 +247,7 @@ fn frame_for(mesh: &Mesh) -> Frame {
 }
 
 impl Found {
-    fn new(bound: &SurfaceBound, claims: Option<Claims>, frame: Frame) -> Self {
+    fn new(bound: &SurfaceBound, claims: Option<Claims>, frame: Frame, recorded: bool) -> Self {
         let outside = |p: DVec3| frame.leave(p).to_array();
         Self {
             bound_deg: bound.bound.to_degrees(),
@@ -220,7 +259,11 @@ impl Found {
                 triangle: w.triangle,
             }),
             pieces: bound.pieces,
-            map: "nearest triangle",
+            map: if recorded {
+                "correspondence"
+            } else {
+                "nearest triangle"
+            },
             claims: claims.map(|claims| ClaimsInDegrees {
                 vertices_deg: claims.vertices.to_degrees(),
                 edges_deg: claims.edges.to_degrees(),

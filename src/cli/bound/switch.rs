@@ -33,7 +33,7 @@ pub(super) struct Switch {
         requires = "switch_px",
         allow_negative_numbers = true
     )]
-    field_of_view: f64,
+    fov: f64,
 }
 
 impl Switch {
@@ -42,7 +42,7 @@ impl Switch {
         match (self.switch_deg, self.switch_px) {
             (Some(degrees), _) => Aperture::degrees(degrees).map(Some),
             (None, Some(pixels)) => {
-                let view = self.field_of_view.to_radians();
+                let view = self.fov.to_radians();
                 aperture_of_pixels(pixels, self.screen_height, view).map(Some)
             }
             (None, None) => Ok(None),

@@ -172,7 +172,9 @@ impl Options {
                     return simplify_guided(mesh, &options, &visibility, terminal);
                 }
             }
-            MethodOptions::Memoryless(_) | MethodOptions::Quadric(_) => {}
+            MethodOptions::Memoryless(_)
+            | MethodOptions::Quadric(_)
+            | MethodOptions::ViewBounded(_) => {}
         }
         simplify(mesh, &options, terminal)
     }

@@ -1,0 +1,318 @@
+//! `lodmark verify`: holds a simplified mesh to what is claimed about it; exit code 1 where the claim is broken.
+
+use std::path::PathBuf;
+
+use clap::ArgGroup;
+
+use super::{Common, Verdict, report, source, terminal::Terminal};
+use crate::{
+    Error, Result,
+    bound::{
+        cell,
+        verify::{self, AngleReport, Claim, DistanceReport, Property, Record},
+    },
+    io,
+    mesh::{self, Mesh},
+};
+
+/// Check a guaranteed error by independent samples and proofs; exit code 1 where a point breaks it
+#[derive(Debug, clap::Args)]
+#[command(group(ArgGroup::new("claim").args(["error", "error_abs", "error_deg"]).required(true)))]
+#[command(after_help = "\
+A distance is checked from both meshes to the other one: at samples spread over the area, along all edges, at all \
+vertices, and by cutting every triangle until it is certain that all of it is near enough or that a point of it is \
+not. The report says what was measured, where it was largest, what is proven, and what share of the area is undecided \
+(near the claim itself, where no proof ends).
+
+An angle is checked for the viewers in a cell with the file that `simplify --bound-out` wrote: that its pieces cover every \
+original triangle exactly once, and that no point and what stands for it are seen under more than the angle, at samples \
+and by proof. Without that file only a weaker property is checked: that every original point has some point of LOW within \
+the angle.")]
+pub(super) struct Options {
+    /// The original mesh: .obj, .ply or .stl
+    #[arg(value_name = "REF")]
+    reference: PathBuf,
+    /// The simplified mesh
+    #[arg(value_name = "LOW")]
+    low: PathBuf,
+    /// Claimed: no point of either mesh is farther from the other than this share of the original's bounding-box diagonal
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    error: Option<f64>,
+    /// The same, in the units of the files
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    error_abs: Option<f64>,
+    /// Check only that every point of LOW is near REF
+    #[arg(long, conflicts_with = "error_deg")]
+    one_sided: bool,
+    /// Claimed: no viewer in --cell sees a point of REF and what stands for it under more than this angle, in degrees
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        allow_negative_numbers = true,
+        requires = "cell"
+    )]
+    error_deg: Option<f64>,
+    /// The viewpoints of --error-deg: a JSON cell file
+    #[arg(long, value_name = "FILE", requires = "error_deg")]
+    cell: Option<PathBuf>,
+    /// What stands for what: the file that simplify --bound-out wrote
+    #[arg(long, value_name = "FILE", requires = "error_deg")]
+    bound: Option<PathBuf>,
+    /// Points on each mesh [default: 1000000]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, hide_default_value = true, value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]
+    samples: u64,
+}
+
+pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    source::require_outputs(common.json.iter())?;
+    let reference = source::read(&options.reference, false, terminal)?;
+    source::require_triangles(&options.reference, &reference)?;
+    let low = source::read(&options.low, false, terminal)?;
+    source::require_triangles(&options.low, &low)?;
+    let holds = match (options.error, options.error_abs, options.error_deg) {
+        (Some(share), ..) => distances(
+            options,
+            &reference,
+            &low,
+            Claim::Relative(share),
+            common,
+            terminal,
+        )?,
+        (None, Some(length), _) => distances(
+            options,
+            &reference,
+            &low,
+            Claim::Absolute(length),
+            common,
+            terminal,
+        )?,
+        (None, None, degrees) => {
+            let degrees = degrees.unwrap_or(0.0);
+            angles(options, &reference, &low, degrees, common, terminal)?
+        }
+    };
+    Ok(if holds {
+        Verdict::Good
+    } else {
+        Verdict::Negative
+    })
+}
+
+fn distances(
+    options: &Options,
+    reference: &Mesh,
+    low: &Mesh,
+    claim: Claim,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<bool> {
+    let found = verify::distance(
+        reference,
+        low,
+        claim,
+        options.one_sided,
+        options.samples,
+        terminal,
+    )?;
+    report(
+        common,
+        "verify",
+        serde_json::json!({
+            "reference": options.reference, "low": options.low, "claim": claim,
+            "one_sided": options.one_sided, "samples": options.samples,
+        }),
+        &found,
+    )?;
+    tell(&found);
+    Ok(found.holds)
+}
+
+fn angles(
+    options: &Options,
+    reference: &Mesh,
+    low: &Mesh,
+    degrees: f64,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<bool> {
+    let Some(path) = &options.cell else {
+        return Err(Error::Usage(
+            "--error-deg needs --cell FILE: the viewpoints that the bound holds for".into(),
+        ));
+    };
+    let cell = cell::file::read(path)?;
+    let record = match &options.bound {
+        Some(path) => Some(Record::from_bytes(&io::bytes::read(path)?, path)?),
+        None => None,
+    };
+    let original = match (&record, &options.bound) {
+        (Some(record), Some(path)) => {
+            if !record.is_to(low) {
+                return Err(Error::input(
+                    path,
+                    format!("does not belong to {}", options.low.display()),
+                ));
+            }
+            recorded(record, reference).ok_or_else(|| {
+                Error::input(
+                    path,
+                    format!("does not belong to {}", options.reference.display()),
+                )
+            })?
+        }
+        _ => reference.clone(),
+    };
+    let found = verify::angles(
+        &original,
+        low,
+        &cell,
+        degrees,
+        record.as_ref(),
+        options.samples,
+        terminal,
+    )?;
+    report(
+        common,
+        "verify",
+        serde_json::json!({
+            "reference": options.reference, "low": options.low, "error_deg": degrees, "cell": cell,
+            "bound": options.bound, "samples": options.samples,
+        }),
+        &found,
+    )?;
+    tell_angles(&found, &original, reference);
+    Ok(found.holds)
+}
+
+/// The original as the run that wrote the record saw it: in canonical order, welded or not.
+fn recorded(record: &Record, reference: &Mesh) -> Option<Mesh> {
+    let welded = mesh::weld(reference.clone()).mesh;
+    [welded, reference.clone()]
+        .iter()
+        .map(|mesh| mesh::canonical(mesh).mesh)
+        .find(|mesh| record.is_from(mesh))
+}
+
+/// The triangle of the file that a triangle of the canonical mesh is.
+fn in_file(original: &Mesh, triangle: u32, reference: &Mesh) -> Option<usize> {
+    let wanted = original.corners(triangle as usize);
+    (0..reference.triangles().len()).find(|&t| {
+        let [a, b, c] = reference.corners(t);
+        [[a, b, c], [b, c, a], [c, a, b]].contains(&wanted)
+    })
+}
+
+fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
+    answer!(
+        "claimed: at most {} degrees between {}",
+        found.claimed_deg,
+        match found.property {
+            Property::Correspondence => "every original point and what stands for it",
+            Property::NearestInAngle =>
+                "every original point and the simplified point nearest in angle (weaker: no --bound)",
+        }
+    );
+    if found.part_of_cell {
+        answer!(
+            "the cell has no end: only viewpoints within four sizes of the original were looked from"
+        );
+    }
+    if let Some(pieces) = found.pieces {
+        match found.gap {
+            Some((triangle, gap)) => answer!(
+                "BROKEN: {pieces} pieces do not cover original triangle {} exactly once ({gap:?})",
+                in_file(original, triangle, reference).unwrap_or(triangle as usize)
+            ),
+            None => answer!("{pieces} pieces cover every original triangle exactly once"),
+        }
+    }
+    if let Some(w) = &found.worst {
+        let [p, s, v] = [w.point, w.replacement, w.viewpoint]
+            .map(|p| format!("({}, {}, {})", p[0], p[1], p[2]));
+        answer!(
+            "{} sightings, the largest angle {:.9} degrees: on triangle {} {p} and {s} seen from {v}",
+            found.sightings,
+            w.angle_deg,
+            in_file(original, w.triangle, reference).unwrap_or(w.triangle as usize)
+        );
+    }
+    if found.violations > 0 {
+        answer!("BROKEN: {} sightings are above the claim", found.violations);
+    }
+    if found.property == Property::Correspondence {
+        answer!(
+            "proven for all viewpoints of the cell but for {:.3e} of the original's area",
+            found.undecided_area
+        );
+    }
+    answer!(
+        "{}",
+        if !found.holds {
+            "the claim is broken"
+        } else if found.undecided_area <= 0.0 {
+            "the claim holds: proven"
+        } else {
+            "nothing breaks the claim"
+        }
+    );
+}
+
+fn tell(found: &DistanceReport) {
+    let percent = |x: f64| {
+        if found.diagonal > 0.0 {
+            format!(" ({:.5} % of the diagonal)", 100.0 * x / found.diagonal)
+        } else {
+            String::new()
+        }
+    };
+    answer!(
+        "claimed: at most {:.6e}{}",
+        found.claimed,
+        percent(found.claimed)
+    );
+    for d in &found.directions {
+        let (f, to) = (
+            &d.farthest,
+            if d.from == "reference" {
+                "simplified"
+            } else {
+                "reference"
+            },
+        );
+        answer!(
+            "{} -> {to}: {} points, largest {:.6e}{} on triangle {} at ({}, {}, {})",
+            d.from,
+            d.samples,
+            f.distance,
+            percent(f.distance),
+            f.triangle,
+            f.point[0],
+            f.point[1],
+            f.point[2]
+        );
+        if d.undecided_area > 0.0 {
+            answer!(
+                "  proven: at most {:.6e}{}; the claim itself is undecided on {:.2e} of the area",
+                d.proven,
+                percent(d.proven),
+                d.undecided_area
+            );
+        } else {
+            answer!("  proven: at most {:.6e}{}", d.proven, percent(d.proven));
+        }
+        if !d.holds {
+            answer!(
+                "  BROKEN: {} of the points are farther away than claimed",
+                d.violations.max(1)
+            );
+        }
+    }
+    answer!(
+        "{}",
+        match (found.holds, found.proven) {
+            (false, _) => "the claim is broken",
+            (true, true) => "the claim holds: proven",
+            (true, false) => "no point breaks the claim",
+        }
+    );
+}

@@ -1,0 +1,241 @@
+//! View-bounded simplification: no point of the original surface is seen under a larger angle from what stands for it
+//! than allowed, by any viewer in a cell (after Eisemann & Décoret 2007; notes, 4.9).
+//!
+//! Collapses come in the order of the memoryless method and are placed by it; where its place is refused, the midpoint and
+//! the ends are tried, the cheapest first. Legal is what keeps every point within the angle of where its whole history
+//! has put it, exactly and not by adding up steps: see [`Correspondence`]. Deviation from the notes: not a sum of
+//! displacements but the displacement itself decides, and beside its length its direction (see [`AngleLimit`]).
+//! The bound is on positions; texture coordinates are carried along as by every other method. Angles: degrees in options,
+//! radians inside.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::memoryless::{self, Memoryless, MemorylessOptions, Objective};
+use crate::{
+    Error, Progress, Result,
+    bound::{
+        cell::ViewCell,
+        correspondence::{AngleLimit, Collapse, Correspondence, Face, Fan, Scratch},
+    },
+    collapse::{Admitted, LiveMesh, Method, Patch, PatchFace, Proposal, Refusal, Site},
+};
+
+/// Options of the method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ViewBoundedOptions {
+    /// The viewpoints, in the units of the mesh.
+    pub cell: ViewCell,
+    /// Largest angle between an original point and what stands for it, in degrees; from 0 to below 90.
+    pub error_deg: f64,
+    /// Where new vertices are wanted.
+    pub placement: MemorylessOptions,
+}
+
+impl ViewBoundedOptions {
+    /// The bound `error_deg` (degrees) for the viewers in `cell` (units of the mesh), with default placement.
+    #[must_use]
+    pub fn new(cell: ViewCell, error_deg: f64) -> Self {
+        Self {
+            cell,
+            error_deg,
+            placement: MemorylessOptions::default(),
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        if !(0.0..90.0).contains(&self.error_deg) {
+            return Err(Error::Usage(format!(
+                "the angle is {} degrees; expected at least 0 and less than 90",
+                self.error_deg
+            )));
+        }
+        if !(0.0..=1.0).contains(&self.placement.volume_weight) {
+            return Err(Error::Usage(format!(
+                "volume-weight is {}; expected a number from 0 to 1",
+                self.placement.volume_weight
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// The method: the order and places of [`Memoryless`], and an account of what became of every point.
+#[derive(Debug)]
+pub struct ViewBounded {
+    placing: Memoryless,
+    placement: MemorylessOptions,
+    limit: AngleLimit,
+    map: Correspondence,
+    scratch: Buffers,
+    /// A collapse was committed without a map: the account is worthless.
+    lost: bool,
+}
+
+/// Buffers of an evaluation.
+#[derive(Debug, Default)]
+pub struct Buffers {
+    patch: Patch,
+    removed: Vec<Face>,
+    added: Vec<Face>,
+    pieces: Scratch,
+}
+
+impl ViewBounded {
+    /// The method on a mesh. O(n).
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for an angle out of range, [`Error::Interrupted`].
+    pub fn new(
+        live: &LiveMesh,
+        options: &ViewBoundedOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        options.check()?;
+        let originals: Vec<[DVec3; 3]> = (0..live.triangle_ids())
+            .map(|t| live.points(t).unwrap_or([DVec3::ZERO; 3]))
+            .collect();
+        progress.step("measure the way to the cell", 0, 0)?;
+        let cell = options.cell.enter_frame(live.frame());
+        let angle = options.error_deg * (std::f64::consts::PI / 180.0);
+        let limit = AngleLimit::new(&originals, &cell, angle);
+        let alive = |t| live.triangle(t).is_some();
+        Ok(Self {
+            placing: Memoryless::new(live, options.placement),
+            placement: options.placement,
+            map: Correspondence::new(originals, alive, &limit),
+            limit,
+            scratch: Buffers::default(),
+            lost: false,
+        })
+    }
+
+    /// The map so far: frame units, faces by their live ids.
+    #[must_use]
+    pub fn correspondence(&self) -> &Correspondence {
+        &self.map
+    }
+
+    /// The map onto the mesh that `live` becomes: file units, faces numbered as in [`LiveMesh::to_mesh`].
+    ///
+    /// # Errors
+    /// [`Error::Internal`] where a collapse was committed that was never allowed.
+    pub(super) fn into_correspondence(self, live: &LiveMesh) -> Result<Correspondence> {
+        if self.lost {
+            return Err(Error::Internal(
+                "a collapse was committed that has no map".into(),
+            ));
+        }
+        let ids: Vec<u32> = (0..live.triangle_ids())
+            .filter(|&t| live.triangle(t).is_some())
+            .collect();
+        let frame = live.frame();
+        Ok(self
+            .map
+            .renumbered(&ids, |p| frame.leave(p), |x| frame.leave_length(x, 1)))
+    }
+
+    /// Whether the collapse to an admitted place keeps every point within the limit.
+    fn bounded(&self, site: &Site<'_>, to: Admitted, buffers: &mut Buffers) -> Result<(), Refusal> {
+        let Buffers {
+            patch,
+            removed,
+            added,
+            pieces,
+        } = buffers;
+        site.patch(to, patch);
+        let fan = lay_out(site.live, patch, removed, added).ok_or(Refusal::Unmapped)?;
+        if self.map.allows(&fan, &self.limit, pieces) {
+            Ok(())
+        } else {
+            Err(Refusal::Bound)
+        }
+    }
+}
+
+/// The fan of a patch, before or after it is committed.
+fn lay_out(
+    live: &LiveMesh,
+    patch: &Patch,
+    removed: &mut Vec<Face>,
+    added: &mut Vec<Face>,
+) -> Option<Fan> {
+    let (moved, gone) = (patch.moved?, patch.gone?);
+    let face = |f: &PatchFace, points| Face {
+        id: f.id,
+        corners: f.corners,
+        points,
+    };
+    removed.clear();
+    removed.extend(patch.removed.iter().map(|f| face(f, patch.before(live, f))));
+    added.clear();
+    added.extend(patch.added.iter().map(|f| face(f, patch.after(live, f))));
+    Fan::new(&Collapse {
+        removed,
+        added,
+        keep: moved.vertex,
+        gone,
+        to: moved.to,
+    })
+}
+
+impl Method for ViewBounded {
+    type Scratch = Buffers;
+
+    fn scratch(&self) -> Buffers {
+        Buffers::default()
+    }
+
+    fn propose(&self, site: &Site<'_>, buffers: &mut Buffers) -> Result<Proposal, Refusal> {
+        let wanted = memoryless::propose(site, &self.placement)?;
+        let mut refusal = match self.bounded(site, wanted.position, buffers) {
+            Ok(()) => return Ok(wanted),
+            Err(refusal) => refusal,
+        };
+        let objective = Objective::of(site.ring, &self.placement);
+        let [u, w] = site.ring.points;
+        let mut others: Vec<(f64, Admitted)> = [site.ring.midpoint(), u, w]
+            .into_iter()
+            .filter_map(|place| site.admit(place).ok())
+            .filter(|place| place.position() != wanted.position.position())
+            .map(|place| (objective.cost(site.ring, place.position()), place))
+            .collect();
+        others.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (geometric, position) in others {
+            match self.bounded(site, position, buffers) {
+                Ok(()) => {
+                    return Ok(Proposal {
+                        position,
+                        image: 0,
+                        geometric,
+                    });
+                }
+                Err(reason) => refusal = reason,
+            }
+        }
+        Err(refusal)
+    }
+
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        self.placing.estimate(live, edge)
+    }
+
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
+        self.placing.may_fall(live, edge)
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.placing.committed(live, patch);
+        let Buffers {
+            removed,
+            added,
+            pieces,
+            ..
+        } = &mut self.scratch;
+        match lay_out(live, patch, removed, added) {
+            Some(fan) => self.map.apply(&fan, &self.limit, pieces),
+            None => self.lost = true,
+        }
+    }
+}

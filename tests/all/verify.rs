@@ -1,0 +1,3 @@
+//! The verifier: true claims pass, planted ones are caught, and its proofs are proofs.
+
+mod distance;
