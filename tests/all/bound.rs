@@ -1,5 +1,7 @@
 //! Bounds of whole surfaces for a view cell, and what usual tests claim instead.
 
+#![expect(clippy::float_cmp, reason = "values that are exact")]
+
 use std::f64::consts::PI;
 
 use glam::DVec3;

@@ -3,6 +3,7 @@
 mod appearance;
 mod architecture;
 mod bound;
+mod bound_command;
 mod cli;
 mod collapse;
 mod compare;

@@ -56,7 +56,7 @@ impl Edge {
     }
 
     /// The same viewpoints with the one closest to `p` at 0.
-    fn from_foot_of(&self, p: DVec3) -> Self {
+    fn centred_at_foot_of(&self, p: DVec3) -> Self {
         let foot = (p - self.origin).dot(self.direction);
         Self {
             origin: self.at(foot),
@@ -74,7 +74,7 @@ impl Edge {
         axis: DVec3,
         aperture: Aperture,
     ) -> Option<DVec3> {
-        let edge = self.from_foot_of(point);
+        let edge = self.centred_at_foot_of(point);
         let ridge = Ridge::new(&edge, point, axis);
         let (sine, cosine) = (aperture.sin(), aperture.cos());
         let limit = |s: f64| 1.0 / viewpoint::extent_from(edge.at(s), point, axis, aperture);
@@ -114,7 +114,7 @@ impl Edge {
         let (half, middle) = (0.5 * (moved - point), 0.5 * (point + moved));
         let radius = length(half);
         let axis = crate::num::math::unit(half)?;
-        let edge = self.from_foot_of(middle);
+        let edge = self.centred_at_foot_of(middle);
         let ridge = Ridge::new(&edge, point, axis);
         // The cotangent of the angle, a ratio whose denominator is not negative: the smallest is wanted.
         let cotangent = |s: f64| {
