@@ -1,3 +1,4 @@
 //! The verifier: true claims pass, planted ones are caught, and its proofs are proofs.
 
+mod angle;
 mod distance;

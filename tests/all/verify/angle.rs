@@ -1,0 +1,431 @@
+//! Claims about angles for a view cell.
+
+use glam::DVec3;
+use lodmark::{
+    Silent,
+    bound::{
+        cell::ViewCell,
+        correspondence::Correspondence,
+        verify::{AngleReport, Gap, Property, Record, angles},
+    },
+    mesh::{Mesh, canonical, generate},
+};
+use proptest::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::{
+    cases,
+    cli::{code, expect, folder, lodmark, put, stdout},
+    shapes::{self, Random},
+};
+
+fn moved(mesh: &Mesh, vertex: usize, by: DVec3) -> Mesh {
+    let mut positions = mesh.positions().to_vec();
+    positions[vertex] += by;
+    Mesh::from_triangles(positions, mesh.triangles().to_vec()).expect("valid")
+}
+
+/// The record that says that every triangle of `low` stands for the same one of `original`.
+fn identity(original: &Mesh, low: &Mesh) -> Vec<u8> {
+    let corners = (0..original.triangles().len())
+        .map(|t| original.corners(t))
+        .collect();
+    let mut bytes = Vec::new();
+    Correspondence::identity(corners)
+        .write(original, low, &mut bytes)
+        .expect("memory");
+    bytes
+}
+
+fn read(bytes: &[u8]) -> Record {
+    Record::from_bytes(bytes, "a.corr").expect("just written")
+}
+
+fn check(original: &Mesh, low: &Mesh, cell: &ViewCell, degrees: f64) -> AngleReport {
+    let record = read(&identity(original, low));
+    angles(original, low, cell, degrees, Some(&record), 5_000, &Silent).expect("fits")
+}
+
+/// The largest angle over many viewpoints and points, by the cosine.
+fn brute(original: &Mesh, low: &Mesh, viewpoints: &[DVec3]) -> f64 {
+    let mut least = 1.0_f64;
+    for t in 0..original.triangles().len() {
+        let (a, b) = (original.corners(t), low.corners(t));
+        for i in 0..=8 {
+            for j in 0..=8 - i {
+                let w = [
+                    f64::from(i) / 8.0,
+                    f64::from(j) / 8.0,
+                    f64::from(8 - i - j) / 8.0,
+                ];
+                let at = |c: [DVec3; 3]| c[0] * w[0] + c[1] * w[1] + c[2] * w[2];
+                for &v in viewpoints {
+                    let (p, s) = (at(a) - v, at(b) - v);
+                    least = least.min(p.dot(s) / (p.length() * s.length()));
+                }
+            }
+        }
+    }
+    libm::acos(least.min(1.0)).to_degrees()
+}
+
+fn terrain() -> Mesh {
+    canonical(&shapes::grid(6, 11)).mesh
+}
+
+#[test]
+fn a_vertex_one_percent_too_far_aside_is_found_and_one_percent_less_is_not() {
+    let mesh = terrain();
+    let vertex = 20;
+    let p = mesh.positions()[vertex];
+    // Seen from straight above, a step to the side is seen in full.
+    let (height, degrees) = (50.0, 0.5_f64);
+    let viewer = p + DVec3::Z * height;
+    let cell = ViewCell::point(viewer).expect("a point");
+    for (share, holds) in [(1.01, false), (0.99, true)] {
+        let step = height * libm::tan((degrees * share).to_radians());
+        let low = moved(&mesh, vertex, DVec3::new(step, 0.0, 0.0));
+        let report = check(&mesh, &low, &cell, degrees);
+        assert_eq!(report.holds, holds, "{report:?}");
+        assert_eq!(report.gap, None);
+        let worst = report.worst.expect("sightings");
+        assert!(
+            (worst.angle_deg - degrees * share).abs() < 1e-4,
+            "{worst:?}"
+        );
+        assert!((DVec3::from_array(worst.point) - p).length() < 1e-4);
+        assert_eq!(report.violations == 0, holds);
+        assert!(!holds || report.undecided_area <= 0.0, "{report:?}");
+    }
+}
+
+#[test]
+fn a_viewpoint_in_the_middle_of_a_cell_is_found_though_no_corner_sees_as_much() {
+    let mesh = terrain();
+    let vertex = 20;
+    let p = mesh.positions()[vertex];
+    let side = |x: f64| p + DVec3::new(x, 0.0, 20.0);
+    let cell = ViewCell::segment([side(-60.0), side(60.0)]).expect("a segment");
+    let low = moved(&mesh, vertex, DVec3::new(0.3, 0.0, 0.0));
+    let step = f64::from(low.positions()[vertex].x as f32) - p.x;
+    let truth = libm::atan2(0.5 * step, 20.0).to_degrees() * 2.0;
+    let report = check(&mesh, &low, &cell, truth / 1.01);
+    let worst = report.worst.expect("sightings").angle_deg;
+    assert!(
+        !report.holds && (worst - truth).abs() < 1e-3 * truth,
+        "{worst} {truth}"
+    );
+    let held = check(&mesh, &low, &cell, truth * 1.01);
+    assert!(held.holds && held.undecided_area <= 0.0, "{held:?}");
+}
+
+#[test]
+fn without_a_record_only_the_nearest_in_angle_is_checked() {
+    let mesh = terrain();
+    let viewer = DVec3::new(3.0, 3.0, 40.0);
+    let cell = ViewCell::point(viewer).expect("a point");
+    // Pushed away along the lines of sight: nothing to see, whatever the distance.
+    let pushed: Vec<DVec3> = mesh
+        .positions()
+        .iter()
+        .map(|&p| viewer + (p - viewer) * 1.25)
+        .collect();
+    let low = Mesh::from_triangles(pushed, mesh.triangles().to_vec()).expect("valid");
+    let look = |low: &Mesh, degrees| {
+        angles(&mesh, low, &cell, degrees, None, 2_000, &Silent).expect("valid")
+    };
+    let held = look(&low, 1e-3);
+    assert!(held.holds && held.property == Property::NearestInAngle && held.pieces.is_none());
+    // Moved aside: the outline is what shows.
+    let aside: Vec<DVec3> = mesh.positions().iter().map(|&p| p + DVec3::X).collect();
+    let low = Mesh::from_triangles(aside, mesh.triangles().to_vec()).expect("valid");
+    let report = look(&low, 0.5);
+    let worst = report.worst.expect("sightings").angle_deg;
+    assert!(!report.holds && (1.0..2.0).contains(&worst), "{worst}");
+}
+
+proptest! {
+    #![proptest_config(cases(60))]
+
+    #[test]
+    fn no_viewer_sees_more_than_the_report_says(kind in 0_u8..4, seed: u64) {
+        let mesh = canonical(&shapes::grid(3, seed)).mesh;
+        let mut random = Random(seed);
+        let mut low = mesh.clone();
+        for v in 0..mesh.positions().len() {
+            let mut by = || (random.unit() - 0.5) * 0.3;
+            low = moved(&low, v, DVec3::new(by(), by(), by()));
+        }
+        let mut at = || DVec3::new(6.0 * random.unit() - 1.5, 6.0 * random.unit() - 1.5, 3.0 + 3.0 * random.unit());
+        let corners: Vec<DVec3> = (0..6).map(|_| at()).collect();
+        let cell = match kind {
+            0 => ViewCell::point(corners[0]),
+            1 => ViewCell::segment([corners[0], corners[1]]),
+            2 => ViewCell::polygon(&corners[..3]),
+            _ => ViewCell::polyhedron(&corners),
+        }.expect("points in no special place");
+        let n = [1, 2, 3, 6][usize::from(kind)];
+        let viewpoints: Vec<DVec3> = (0..60).map(|_| {
+            let weights: Vec<f64> = (0..n).map(|_| random.unit()).collect();
+            let sum: f64 = weights.iter().sum();
+            weights.iter().zip(&corners).map(|(w, c)| *c * (*w / sum)).sum()
+        }).collect();
+        let seen = brute(&mesh, &low, &viewpoints);
+        let report = check(&mesh, &low, &cell, 45.0);
+        let said = report.worst.expect("sightings").angle_deg;
+        prop_assert!(report.gap.is_none() && seen <= said * (1.0 + 1e-3) + 1e-6, "{seen} above {said}");
+        // What is proven for a claim is true.
+        let proven = check(&mesh, &low, &cell, said * 1.05);
+        prop_assert!(proven.holds);
+        prop_assert!(!check(&mesh, &low, &cell, said / 1.01).holds);
+    }
+}
+
+/// The words of a record between the header and the checksum, and back to a file.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes[84..bytes.len() - 32]
+        .chunks(4)
+        .map(|b| u32::from_le_bytes(b.try_into().expect("four")))
+        .collect()
+}
+
+fn file(header: &[u8], words: &[u32]) -> Vec<u8> {
+    let mut bytes = header[..84].to_vec();
+    bytes.extend(words.iter().flat_map(|w| w.to_le_bytes()));
+    bytes.extend(Sha256::digest(&bytes));
+    bytes
+}
+
+#[test]
+fn pieces_that_leave_a_gap_or_lie_twice_are_found() {
+    let mesh = canonical(&generate::tetrahedron()).mesh;
+    let cell = ViewCell::point(DVec3::new(0.0, 0.0, 9.0)).expect("a point");
+    let whole = identity(&mesh, &mesh);
+    let words = words(&whole);
+    // Per triangle: count, target, corners, 3 x 4 weights.
+    assert_eq!(words.len(), 4 * 15);
+    let judge = |words: &[u32], pieces: u64| {
+        let mut header = whole.clone();
+        header[76..84].copy_from_slice(&pieces.to_le_bytes());
+        let record = read(&file(&header, words));
+        let report = angles(&mesh, &mesh, &cell, 1.0, Some(&record), 100, &Silent).expect("fits");
+        assert_eq!(report.holds, report.gap.is_none() && report.violations == 0);
+        report.gap
+    };
+    assert_eq!(judge(&words, 4), None);
+    let mut shrunk = words.clone();
+    shrunk[15 + 3 + 4] -= 1 << 24;
+    assert_eq!(judge(&shrunk, 4), Some((1, Gap::Area)));
+    let mut turned = words.clone();
+    for k in 0..4 {
+        turned.swap(30 + 3 + k, 30 + 7 + k);
+    }
+    assert_eq!(judge(&turned, 4), Some((2, Gap::Turned)));
+    let mut none = words.clone();
+    none[0] = 0;
+    none.drain(1..15);
+    assert_eq!(judge(&none, 3), Some((0, Gap::Area)));
+    // Two halves that are the same half.
+    let mut twice = words.clone();
+    twice[0] = 2;
+    twice[3 + 8] = 1 << 30;
+    twice[3 + 9] = 1 << 30;
+    let half: Vec<u32> = twice[1..15].to_vec();
+    twice.splice(15..15, half);
+    assert_eq!(judge(&twice, 5), Some((0, Gap::Overlap)));
+}
+
+proptest! {
+    #![proptest_config(cases(400))]
+
+    #[test]
+    fn no_bytes_make_the_reader_panic_or_accept_what_is_out_of_range(
+        at: prop::sample::Index, value: u32, cut: prop::sample::Index, shorten: bool,
+    ) {
+        let mesh = canonical(&generate::tetrahedron()).mesh;
+        let whole = identity(&mesh, &mesh);
+        let mut words = words(&whole);
+        if shorten {
+            words.truncate(cut.index(words.len()));
+        } else {
+            let at = at.index(words.len());
+            words[at] = value;
+        }
+        match Record::from_bytes(&file(&whole, &words), "a.corr") {
+            Err(error) => prop_assert_eq!(error.exit_code(), 3),
+            Ok(record) => {
+                let cell = ViewCell::point(DVec3::new(0.0, 0.0, 9.0)).expect("a point");
+                let report = angles(&mesh, &mesh, &cell, 1.0, Some(&record), 50, &Silent);
+                prop_assert!(report.is_ok());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_damaged_file_says_what_is_wrong_with_it() {
+    let mesh = canonical(&generate::tetrahedron()).mesh;
+    let whole = identity(&mesh, &mesh);
+    let refused = |bytes: &[u8]| Record::from_bytes(bytes, "a.corr").expect_err("damaged");
+    for length in [0, 7, 8, 50, 115, whole.len() - 1] {
+        assert_eq!(refused(&whole[..length]).exit_code(), 3);
+    }
+    let mut newer = whole.clone();
+    newer[8] = 2;
+    assert_eq!(refused(&newer).exit_code(), 4);
+    let mut flipped = whole.clone();
+    flipped[100] ^= 1;
+    assert!(refused(&flipped).to_string().contains("checksum"));
+    let mut huge = whole[..84].to_vec();
+    huge[76..84].copy_from_slice(&u64::MAX.to_le_bytes());
+    huge.extend(Sha256::digest(&huge));
+    assert!(refused(&huge).to_string().contains("more pieces"));
+    let other = generate::icosphere(1);
+    assert!(!read(&whole).is_from(&other) && !read(&whole).is_to(&other));
+}
+
+#[test]
+fn viewpoints_on_and_in_the_mesh_are_judged_without_a_number_that_is_none() {
+    let mesh = canonical(&generate::icosphere(2)).mesh;
+    let on = ViewCell::point(mesh.positions()[0]).expect("a point");
+    let inside = ViewCell::point(DVec3::ZERO).expect("a point");
+    let through = ViewCell::segment([DVec3::splat(-2.0), DVec3::splat(2.0)]).expect("a segment");
+    for cell in [&on, &inside, &through] {
+        assert!(check(&mesh, &mesh, cell, 0.0).holds, "nothing moved");
+    }
+    // The viewer's own point moved away: seen in any direction.
+    let low = moved(&mesh, 0, mesh.positions()[0] * 0.01);
+    let report = check(&mesh, &low, &on, 89.0);
+    assert!(!report.holds && report.worst.expect("sightings").angle_deg.is_finite());
+    for degrees in [-1.0, 90.0, f64::NAN] {
+        let refused = angles(&mesh, &mesh, &on, degrees, None, 1, &Silent);
+        assert_eq!(refused.expect_err("no angle").exit_code(), 2);
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let mesh = terrain();
+    let low = moved(&mesh, 3, DVec3::new(0.1, 0.0, 0.05));
+    let cell = ViewCell::segment([DVec3::new(0.0, 0.0, 9.0), DVec3::new(6.0, 0.0, 9.0)])
+        .expect("a segment");
+    let reports: Vec<AngleReport> = [1, 2, 3]
+        .map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads")
+                .install(|| check(&mesh, &low, &cell, 0.5))
+        })
+        .into();
+    assert_eq!(reports[0], reports[1]);
+    assert_eq!(reports[0], reports[2]);
+}
+
+#[test]
+fn the_command_names_the_place_where_an_angle_is_too_large() {
+    let dir = folder();
+    let mesh = terrain();
+    let low = moved(&mesh, 20, DVec3::new(0.5, 0.0, 0.0));
+    put(&dir, "ref.ply", &mesh);
+    put(&dir, "low.ply", &low);
+    std::fs::write(dir.path().join("b.corr"), identity(&mesh, &low)).expect("writes");
+    let cell = r#"{"schema": 1, "cell": {"segment": [[0, 0, 40], [6, 0, 40]]}}"#;
+    std::fs::write(dir.path().join("cell.json"), cell).expect("writes");
+    let run = |degrees: &str, more: &[&str]| {
+        let words = [
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--cell",
+            "cell.json",
+            "--error-deg",
+            degrees,
+            "--samples",
+            "500",
+        ];
+        lodmark(&dir, &[&words, more].concat())
+    };
+    let broken = run("0.1", &["--bound", "b.corr", "--json", "r.json"]);
+    assert_eq!(code(&broken), 1);
+    assert!(stdout(&broken).contains("seen from"), "{}", stdout(&broken));
+    let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(json["property"], "correspondence");
+    assert_eq!(code(&run("2", &["--bound", "b.corr"])), 0);
+    assert_eq!(code(&run("2", &[])), 0);
+    expect(
+        &dir,
+        3,
+        &[
+            "verify",
+            "low.ply",
+            "low.ply",
+            "--cell",
+            "cell.json",
+            "--error-deg",
+            "1",
+            "--bound",
+            "b.corr",
+        ],
+    );
+    expect(
+        &dir,
+        3,
+        &[
+            "verify",
+            "ref.ply",
+            "ref.ply",
+            "--cell",
+            "cell.json",
+            "--error-deg",
+            "1",
+            "--bound",
+            "b.corr",
+        ],
+    );
+    expect(
+        &dir,
+        3,
+        &[
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--cell",
+            "cell.json",
+            "--error-deg",
+            "1",
+            "--bound",
+            "ref.ply",
+        ],
+    );
+    expect(
+        &dir,
+        2,
+        &["verify", "ref.ply", "low.ply", "--error-deg", "1"],
+    );
+    expect(
+        &dir,
+        2,
+        &[
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--error",
+            "1",
+            "--cell",
+            "cell.json",
+        ],
+    );
+    expect(
+        &dir,
+        2,
+        &[
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--cell",
+            "cell.json",
+            "--error-deg",
+            "90",
+        ],
+    );
+}
