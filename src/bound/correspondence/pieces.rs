@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::{
-    clip::{Corner as PlaneCorner, clip},
+    clip::{Corner as PlaneCorner, Place, clip, place},
     fan::{After, Fan},
 };
 use crate::num::{fixed::Weights31, math::sqrt};
@@ -82,6 +82,7 @@ fn itself() -> [Corner; 3] {
 /// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    whole: Vec<PlaneCorner>,
     polygon: Vec<PlaneCorner>,
     spare: Vec<PlaneCorner>,
     corners: Vec<Corner>,
@@ -266,30 +267,39 @@ impl Correspondence {
         let within = |[u, v]: [f64; 2]| a + (b - a) * u + (c - a) * v;
         for piece in self.pieces(before.face.id) {
             let mut parts = 0;
-            let load = |polygon: &mut Vec<PlaneCorner>| {
-                polygon.clear();
-                polygon.extend(piece.corners.iter().map(|corner| PlaneCorner {
+            scratch.whole.clear();
+            scratch
+                .whole
+                .extend(piece.corners.iter().map(|corner| PlaneCorner {
                     plane: within(corner.target.get()),
                     source: corner.source.get(),
                 }));
-            };
             for &j in &fan.overlaps[i] {
                 let after = &fan.after[j as usize];
-                load(&mut scratch.polygon);
-                if clip(&mut scratch.polygon, &mut scratch.spare, &after.plane) {
+                let place = place(&scratch.whole, &after.plane);
+                if place == Place::Outside {
+                    continue;
+                }
+                scratch.polygon.clone_from(&scratch.whole);
+                if place == Place::Inside
+                    || clip(&mut scratch.polygon, &mut scratch.spare, &after.plane)
+                {
                     parts += 1;
                     self.place(piece.triangle, after, scratch);
                     if !visit(piece, after, scratch) {
                         return false;
                     }
+                    if place == Place::Inside {
+                        break;
+                    }
                 }
             }
             if parts == 0 {
                 // Thinner than rounding and between two parts: it goes whole to the one it is nearest to.
-                load(&mut scratch.polygon);
+                scratch.polygon.clone_from(&scratch.whole);
                 let nearest = fan.overlaps[i].iter().map(|&j| &fan.after[j as usize]);
                 let nearest = nearest.max_by(|x, y| {
-                    let depth = |p: &After| p.plane.depth(scratch.polygon[0].plane);
+                    let depth = |p: &After| p.plane.depth(scratch.whole[0].plane);
                     depth(x).total_cmp(&depth(y))
                 });
                 if let Some(after) = nearest {

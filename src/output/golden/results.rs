@@ -1,8 +1,11 @@
 //! Cases of meshes and numbers: generators, methods, replay, comparisons.
 
+use glam::DVec3;
+
 use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
     Error, Result, Silent,
+    bound::cell::ViewCell,
     mesh::{Materials, Mesh, MeshParts, canonical, generate},
     metric::{
         luma::ViewErrors,
@@ -19,6 +22,7 @@ use crate::{
         image::{DrivingShading, ImageOptions, Polish, Preset, Start},
         quadric::QuadricOptions,
         simplify,
+        view_bounded::ViewBoundedOptions,
     },
     view::{self, Interpolation, Projection, Shading, Specular, ViewSet, ViewsName, frame_of},
 };
@@ -146,7 +150,26 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     limited.error_rms = Some(4.0);
     let outcome = simplify(&torus(), &limited, &Silent)?;
     outcome_items(collector, "torus/image-error-rms", &outcome);
+    bounded(collector)?;
     side_by_side(collector)
+}
+
+/// Within an angle for viewers in a cell: the mesh, and what stands for what.
+fn bounded(collector: &mut Collector) -> Result<()> {
+    let at = |x: f64, y: f64| DVec3::new(x, y, 4.0);
+    let cell = ViewCell::polygon(&[at(-1.0, -0.5), at(1.0, -0.5), at(0.5, 1.0)])?;
+    let mesh = canonical(&generate::torus(1.0, 0.4, 24, 12)).mesh;
+    let own = ViewBoundedOptions::new(cell, 0.5);
+    let options = Options::view_bounded(own, Amount::ErrorOnly);
+    let outcome = simplify(&mesh, &options, &Silent)?;
+    outcome_items(collector, "torus/view-bounded", &outcome);
+    let mut bytes = Vec::new();
+    if let Some(map) = &outcome.correspondence {
+        map.write(&mesh, &outcome.mesh, &mut bytes)
+            .map_err(|e| Error::Internal(e.to_string()))?;
+    }
+    collector.bytes("torus/view-bounded/correspondence", &bytes);
+    Ok(())
 }
 
 /// The picture of the README: a model, and what images and geometry leave of it.
