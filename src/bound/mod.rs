@@ -7,5 +7,11 @@
 pub mod cell;
 pub mod correspondence;
 pub mod envelope;
+pub mod heuristics;
+pub mod planar;
+pub mod point;
+pub mod region;
+pub mod surface;
+pub mod switch;
 pub mod tolerance;
 pub mod verify;

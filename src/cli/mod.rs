@@ -9,6 +9,7 @@ macro_rules! answer {
 
 mod account;
 mod answers;
+mod bound;
 mod check;
 mod check_rays;
 mod compare;
@@ -78,6 +79,8 @@ enum Command {
     Compare(compare::Options),
     Visibility(visibility::Options),
     MergeVisibility(visibility::MergeOptions),
+    Bound(bound::Options),
+    BoundRegion(bound::RegionOptions),
     Verify(verify::Options),
     Check(check::Options),
     CheckRays(check_rays::Options),
@@ -92,7 +95,7 @@ enum Command {
 }
 
 /// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["bound", "lod"];
+const NOT_BUILT: &[&str] = &["lod"];
 
 /// What a command that succeeded has to say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +153,8 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Compare(options) => compare::run(&options, common, &terminal),
         Command::Visibility(options) => visibility::run(&options, common, &terminal),
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
+        Command::Bound(options) => bound::run(&options, common, &terminal),
+        Command::BoundRegion(options) => bound::run_region(&options, common, &terminal),
         Command::Verify(options) => verify::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),

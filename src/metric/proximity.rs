@@ -66,6 +66,12 @@ impl Proximity {
         Some(Self { nodes, triangles })
     }
 
+    /// The corners of a triangle of the tree, in ascending order of their coordinates.
+    #[must_use]
+    pub fn corners(&self, index: u32) -> [DVec3; 3] {
+        self.triangles[index as usize].corners()
+    }
+
     /// Squared distance from `p` to the triangles and the index of a triangle of the tree that has it. `near` is a
     /// guess of that triangle: a good one saves time and changes no distance.
     #[must_use]

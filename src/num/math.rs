@@ -56,6 +56,18 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
+/// Arc sine, in [-pi/2, pi/2]; NaN beyond -1 and 1.
+#[must_use]
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+
+/// Cube root.
+#[must_use]
+pub fn cbrt(x: f64) -> f64 {
+    libm::cbrt(x)
+}
+
 /// Logarithm to base 10.
 #[must_use]
 pub fn log10(x: f64) -> f64 {

@@ -241,7 +241,7 @@ fn what_is_planned_but_not_built_ends_with_4() {
     put(&dir, "in.ply", &generate::icosphere(1));
     let gltf = ["inspect", "in.glb"];
     fs::write(dir.path().join("in.glb"), b"glTF").expect("writes");
-    for words in [&["bound", "a", "b"][..], &gltf] {
+    for words in [&["lod", "a", "b"][..], &gltf] {
         let said = expect(&dir, 4, words);
         assert!(
             said.contains("not built yet") || said.contains("yet;"),

@@ -2,6 +2,8 @@
 
 mod appearance;
 mod architecture;
+mod bound;
+mod bound_command;
 mod cli;
 mod collapse;
 mod compare;
@@ -25,7 +27,9 @@ mod metric;
 mod metric_surface;
 mod oracle;
 mod output;
+mod planar;
 mod planted_bugs;
+mod point_bounds;
 mod polish;
 mod quadric;
 mod raster;

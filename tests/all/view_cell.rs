@@ -1,5 +1,7 @@
 //! View cells: what is refused, what a file holds, and how far they are from triangles.
 
+#![expect(clippy::float_cmp, reason = "values that are exact")]
+
 use glam::DVec3;
 use lodmark::{
     bound::cell::{Shape, ViewCell, file},

@@ -16,8 +16,8 @@ use sha2::{Digest, Sha256};
 use super::{Correspondence, Piece};
 use crate::mesh::Mesh;
 
-const MAGIC: &[u8; 8] = b"LODMCORR";
-const FORMAT: u32 = 1;
+pub(super) const MAGIC: &[u8; 8] = b"LODMCORR";
+pub(super) const FORMAT: u32 = 1;
 
 impl Correspondence {
     /// Writes the file of a correspondence from `original` (in canonical order) to `simplified`, whose triangles are the
@@ -74,7 +74,7 @@ impl Correspondence {
 }
 
 /// SHA-256 of the coordinates of all corners of all triangles, in order.
-fn surface_digest(mesh: &Mesh) -> [u8; 32] {
+pub(super) fn surface_digest(mesh: &Mesh) -> [u8; 32] {
     let mut sum = Sha256::new();
     for t in 0..mesh.triangles().len() {
         for p in mesh.corners(t) {

@@ -9,8 +9,10 @@ mod angle;
 mod clip;
 mod fan;
 mod file;
+mod pairs;
 mod pieces;
 
 pub use angle::AngleLimit;
 pub use fan::{Collapse, Face, Fan};
+pub use pairs::pairs;
 pub use pieces::{Allowance, Corner, Correspondence, Piece, Scratch};

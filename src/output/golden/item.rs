@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{files, hidden, pictures, results, visibility};
+use super::{bounds, files, hidden, pictures, results, visibility};
 use crate::{
     Progress, Result,
     mesh::{Mesh, content_sha256},
@@ -60,6 +60,11 @@ pub const GROUPS: &[Group] = &[
         name: "visibility",
         about: "V(t) by every rule, hidden parts, colours",
         run: visibility::measured,
+    },
+    Group {
+        name: "bound",
+        about: "what is guaranteed for a view cell",
+        run: bounds::bounds,
     },
     Group {
         name: "simplify",

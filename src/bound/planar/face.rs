@@ -1,0 +1,284 @@
+//! Which lines a face may be projected on, along the line's normal, so that no viewer sees any of its points move by
+//! more than an angle.
+//!
+//! Eisemann & Décoret 2007, section 5 with appendices B and C. For one viewpoint the limit over a face is the smallest
+//! value of equation 11, whose stationary points are roots of one quadratic. Its two roots are taken in the form that
+//! does not cancel, and then the special cases need no branch: where the limit is a parabola one root goes to infinity
+//! and the other is the parabola's (equation 12), where it is a monotone hyperbola or has no extremum the square root
+//! is no number, where the face line holds the viewpoint both roots are the viewpoint. For viewpoints between the
+//! cell's ends the limit is linear (equation 10). Every candidate is a legal viewpoint with a point of the face, so a
+//! superfluous one changes nothing. The alpha of equations 11 to 13 is an abscissa across the direction, not a length
+//! along the face.
+
+use glam::DVec2;
+
+use super::{
+    Aperture, SegmentCell,
+    point::{Tangent, reach_of, tangents},
+};
+use crate::num::math;
+
+/// Offsets `rho` of the valid lines `x . d = rho`; none where `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The smallest valid offset; minus infinity where there is none.
+    pub min: f64,
+    /// The largest valid offset; infinity where there is none.
+    pub max: f64,
+}
+
+impl Interval {
+    /// Every offset.
+    pub const ALL: Self = Self {
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+    };
+
+    /// The offsets that are in both.
+    #[inline]
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            min: self.min.max(other.min),
+            max: self.max.min(other.max),
+        }
+    }
+
+    /// Whether no offset is in it.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.min > self.max
+    }
+
+    /// Whether `rho` is in it.
+    #[must_use]
+    pub fn contains(self, rho: f64) -> bool {
+        self.min <= rho && rho <= self.max
+    }
+}
+
+/// A cell, a direction of projection and an aperture: what all faces have in common.
+#[derive(Clone, Debug)]
+pub struct Projection {
+    cell: SegmentCell,
+    direction: DVec2,
+    sin: f64,
+    cos: f64,
+    /// Ends of the cell by their coordinates across and along the direction; infinite ends are left out.
+    ends: [Option<DVec2>; 2],
+    /// Tangents by side of the axis (0 left of it), then by sign of the direction (0 along it).
+    tangents: [[[Option<Tangent>; 2]; 2]; 2],
+    /// Offset of the frame's origin.
+    offset: f64,
+}
+
+impl Projection {
+    /// Projections along the unit vector `direction`, for viewers in `cell` who accept `aperture`.
+    #[must_use]
+    pub fn new(cell: &SegmentCell, direction: DVec2, aperture: Aperture) -> Self {
+        let local = cell.turn(direction);
+        let end = |x: f64| x.is_finite().then(|| DVec2::new(x * local.y, x * local.x));
+        let mirrored = DVec2::new(local.x, -local.y);
+        Self {
+            cell: *cell,
+            direction: local,
+            sin: aperture.sin(),
+            cos: aperture.cos(),
+            ends: cell.ends().map(end),
+            tangents: [local, mirrored].map(|d| [d, -d].map(|d| tangents(d, aperture))),
+            offset: cell.origin().dot(direction),
+        }
+    }
+
+    /// The offsets of the lines that the face from `a` to `b` may be projected on. A face may be a point, hold the
+    /// viewpoint, or cross the cell's line: it is split there (appendix B). Where it touches the cell, nothing but the
+    /// line through the contact is left of the interval. Bounds of the paper's section 5, exact.
+    #[inline]
+    #[must_use]
+    pub fn interval(&self, a: DVec2, b: DVec2) -> Interval {
+        let (m, n) = (self.cell.enter(a), self.cell.enter(b));
+        let d = self.direction;
+        let view = |p: DVec2| DVec2::new(p.x * d.y - p.y * d.x, p.x * d.x + p.y * d.y);
+        let face = Face {
+            from: view(m),
+            to: view(n),
+        };
+        let local = if self.sin == 0.0 {
+            self.interval_without_tolerance(&face)
+        } else {
+            let mut bounds = Bounds(Interval::ALL);
+            self.narrow_by_ends(&face, &mut bounds);
+            self.narrow_by_tangents(&face, m.y, n.y, [m.x, n.x], &mut bounds);
+            bounds.0
+        };
+        Interval {
+            min: local.min + self.offset,
+            max: local.max + self.offset,
+        }
+    }
+
+    /// With no tolerance a point may move in the direction of sight only, which all points of a face can do alike only
+    /// where one viewpoint sees the face from its end.
+    fn interval_without_tolerance(&self, face: &Face) -> Interval {
+        let (from, to) = (face.from, face.to);
+        if let [Some(v), Some(w)] = self.ends
+            && v == w
+            && from.x == v.x
+            && to.x == v.x
+        {
+            let mut bounds = Bounds(Interval::ALL);
+            bounds.narrow(from - v, from.y, 0.0, 1.0);
+            bounds.narrow(to - v, to.y, 0.0, 1.0);
+            if (from.y < v.y) != (to.y < v.y) {
+                bounds.pin(v.y);
+            }
+            return bounds.0;
+        }
+        Interval {
+            min: from.y.max(to.y),
+            max: from.y.min(to.y),
+        }
+    }
+
+    /// What the ends of the cell allow (equations 11 to 13, appendix C).
+    #[inline(always)]
+    fn narrow_by_ends(&self, face: &Face, bounds: &mut Bounds) {
+        let (sin, cos) = (self.sin, self.cos);
+        let run = face.to - face.from;
+        let inverse = 1.0 / run.x;
+        // Abscissae of the extrema, for a face line at distance 1 of the viewpoint: two for +theta, two for -theta.
+        let mut extrema = [f64::NAN; 4];
+        if run.x != 0.0 {
+            for (sign, pair) in [(1.0, 0), (-1.0, 2)] {
+                let s = sign * sin;
+                let p = s * run.x + cos * run.y;
+                let q = cos * run.x - s * run.y;
+                let root = s + sign * math::sqrt(s * run.x / p);
+                extrema[pair] = root / q;
+                extrema[pair + 1] = -s * cos / (p * root);
+            }
+        }
+        for end in self.ends.into_iter().flatten() {
+            let (from, to) = (face.from - end, face.to - end);
+            bounds.narrow(from, face.from.y, sin, cos);
+            bounds.narrow(to, face.to.y, sin, cos);
+            if run.x == 0.0 {
+                if from.x == 0.0 && (from.y < 0.0) != (to.y < 0.0) {
+                    bounds.pin(end.y);
+                }
+                continue;
+            }
+            let moment = from.y * run.x - from.x * run.y;
+            if (from.x < 0.0) != (to.x < 0.0) {
+                // Straight behind the direction, a point may go as far as the viewer and no farther.
+                let ahead = moment * inverse;
+                if ahead <= 0.0 {
+                    bounds.0.max = bounds.0.max.min(end.y);
+                }
+                if ahead >= 0.0 {
+                    bounds.0.min = bounds.0.min.max(end.y);
+                }
+            }
+            let (low, high) = (from.x.min(to.x), from.x.max(to.x));
+            for extremum in extrema {
+                let x = moment * extremum;
+                if x > low && x < high {
+                    let along = (x - from.x) * inverse * run.y;
+                    let point = DVec2::new(x, from.y + along);
+                    bounds.narrow(point, face.from.y + along, sin, cos);
+                }
+            }
+        }
+    }
+
+    /// What the viewpoints between the ends allow: at those where a circle touches the line of the cell the limit is
+    /// linear along the face (equation 10), so that the ends of that part of the face are enough.
+    #[inline(always)]
+    fn narrow_by_tangents(
+        &self,
+        face: &Face,
+        from_height: f64,
+        to_height: f64,
+        abscissae: [f64; 2],
+        bounds: &mut Bounds,
+    ) {
+        // Split where the face crosses the axis (appendix B).
+        let rise = to_height - from_height;
+        let crossing = if (from_height < 0.0) == (to_height < 0.0) {
+            None
+        } else {
+            Some((from_height / (from_height - to_height)).clamp(0.0, 1.0))
+        };
+        let below = from_height < 0.0;
+        let parts = match crossing {
+            None => [Some((0.0, 1.0, below)), None],
+            Some(at) => [Some((0.0, at, below)), Some((at, 1.0, !below))],
+        };
+        let [first, last] = self.cell.ends();
+        let run = face.to.y - face.from.y;
+        for (low, high, below) in parts.into_iter().flatten() {
+            let side = if below { -1.0 } else { 1.0 };
+            for (direction, sign) in [(0, 1.0), (1, -1.0)] {
+                for tangent in self.tangents[usize::from(below)][direction] {
+                    let Some(Tangent { offset, length }) = tangent else {
+                        continue;
+                    };
+                    // The viewpoint of the point at parameter t is at start + t slope.
+                    let start = abscissae[0] + side * offset * from_height;
+                    let slope = abscissae[1] - abscissae[0] + side * offset * rise;
+                    let (at_low, at_high) = (start + low * slope, start + high * slope);
+                    if at_low.max(at_high) < first || at_low.min(at_high) > last {
+                        continue;
+                    }
+                    let part = |t: f64, x: f64| {
+                        if x < first {
+                            ((first - start) / slope).clamp(low, high)
+                        } else if x > last {
+                            ((last - start) / slope).clamp(low, high)
+                        } else {
+                            t
+                        }
+                    };
+                    for t in [part(low, at_low), part(high, at_high)] {
+                        let height = (from_height + t * rise) * side;
+                        let limit = face.from.y + t * run + sign * length * height.max(0.0);
+                        if sign > 0.0 {
+                            bounds.0.max = bounds.0.max.min(limit);
+                        } else {
+                            bounds.0.min = bounds.0.min.max(limit);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The ends of a face by their coordinates across and along the direction.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    from: DVec2,
+    to: DVec2,
+}
+
+/// An interval in the making.
+#[derive(Clone, Copy, Debug)]
+struct Bounds(Interval);
+
+impl Bounds {
+    /// A point of the face at offset `rho`, `sight` away from a viewpoint, may move so far and no farther.
+    #[inline(always)]
+    fn narrow(&mut self, sight: DVec2, rho: f64, sin: f64, cos: f64) {
+        let squared = sight.x * sight.x + sight.y * sight.y;
+        let across = sight.x.abs();
+        let up = rho + reach_of(squared, across, sight.y, sin, cos);
+        let down = rho - reach_of(squared, across, -sight.y, sin, cos);
+        self.0.max = self.0.max.min(up);
+        self.0.min = self.0.min.max(down);
+    }
+
+    /// A point of the face lies at a viewpoint.
+    fn pin(&mut self, rho: f64) {
+        self.0 = self.0.and(Interval { min: rho, max: rho });
+    }
+}

@@ -1,0 +1,224 @@
+//! `lodmark bound-region`: figures of validity regions, as in Eisemann & Décoret 2007, Figures 2 and 7.
+
+use std::{fmt::Write, path::PathBuf};
+
+use glam::DVec3;
+
+use crate::{
+    Error, Result,
+    bound::{
+        cell::{ViewCell, file},
+        planar::Aperture,
+        region::{self, Profile},
+    },
+    cli::{Common, Verdict, report, source, terminal::Terminal},
+    io,
+    mesh::{Mesh, MeshParts},
+};
+
+/// Draw where a point may move before a viewer in a view cell sees it move by more than an angle
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+A .svg shows the region in a plane through the first point: that of point and cell for a segment or a line, one that \
+holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl) is the region's surface. \
+Where the region has no end it is cut off at --reach.")]
+pub(in crate::cli) struct Options {
+    /// Figure (.svg) or mesh (.obj, .ply, .stl)
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    /// Where viewers may be: a JSON cell file (see `lodmark bound --help`)
+    #[arg(long, value_name = "FILE")]
+    cell: PathBuf,
+    /// The point, as x,y,z; may be given several times
+    #[arg(long = "point", value_name = "X,Y,Z", required = true, allow_hyphen_values = true, value_parser = parse_point)]
+    points: Vec<DVec3>,
+    /// The angle, in degrees: at least 0 and less than 90
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    error_deg: f64,
+    /// Cut the region off at this distance from its point [default: twice the largest bounded extent]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    reach: Option<f64>,
+    /// Figure: the normal of the plane that is shown
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_point)]
+    normal: Option<DVec3>,
+    /// Figure: directions around each point [default: 720]
+    #[arg(long, value_name = "N")]
+    directions: Option<u32>,
+    /// Mesh: 20 * 4^K triangles for each point, K from 0 to 7 [default: 4]
+    #[arg(long, value_name = "K")]
+    subdivisions: Option<u32>,
+}
+
+pub(in crate::cli) fn run(options: &Options, common: &Common, _: &Terminal) -> Result<Verdict> {
+    let svg = options
+        .output
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("svg"));
+    if !svg {
+        io::writable_format(&options.output)?;
+    }
+    let misplaced = if svg {
+        options.subdivisions.map(|_| "--subdivisions is for a mesh")
+    } else if options.directions.is_some() || options.normal.is_some() {
+        Some("--directions and --normal are for a figure (.svg)")
+    } else {
+        None
+    };
+    if let Some(what) = misplaced {
+        return Err(Error::Usage(format!(
+            "{what}; {} is none",
+            options.output.display()
+        )));
+    }
+    source::require_outputs([&options.output].into_iter().chain(common.json.iter()))?;
+    let aperture = Aperture::degrees(options.error_deg)?;
+    let cell = file::read(&options.cell)?;
+    let directions = options.directions.unwrap_or(720);
+    let subdivisions = options.subdivisions.unwrap_or(4);
+    if svg {
+        let text = options.figure(&cell, aperture, directions)?;
+        io::atomic::write(&options.output, |file| file.write_all(text.as_bytes()))?;
+    } else {
+        let shells: Vec<Mesh> = options
+            .points
+            .iter()
+            .map(|&p| region::shell(&cell, p, aperture, subdivisions, options.reach))
+            .collect::<Result<_>>()?;
+        io::write(&options.output, &together(shells)?)?;
+    }
+    let points: Vec<[f64; 3]> = options.points.iter().map(DVec3::to_array).collect();
+    report(
+        common,
+        "bound-region",
+        serde_json::json!({
+            "cell": cell, "points": points, "error_deg": options.error_deg, "reach": options.reach,
+            "normal": options.normal.map(|n| n.to_array()), "directions": svg.then_some(directions),
+            "subdivisions": (!svg).then_some(subdivisions),
+        }),
+        serde_json::json!({ "output": options.output }),
+    )?;
+    answer!(
+        "{}: {} validity regions for {} degrees",
+        options.output.display(),
+        options.points.len(),
+        options.error_deg
+    );
+    Ok(Verdict::Good)
+}
+
+impl Options {
+    fn figure(&self, cell: &ViewCell, aperture: Aperture, directions: u32) -> Result<String> {
+        let first = self.points.first().copied().unwrap_or_default();
+        let normal = self
+            .normal
+            .unwrap_or_else(|| region::profile_normal(cell, first));
+        let profiles: Vec<Profile> = self
+            .points
+            .iter()
+            .map(|&p| region::profile(cell, p, normal, aperture, directions, self.reach))
+            .collect::<Result<_>>()?;
+        Ok(svg(
+            &self.points,
+            &profiles,
+            cell.corners().unwrap_or_default(),
+        ))
+    }
+}
+
+/// Outlines with their points, and the corners of the cell with all lines between them, seen along the normal.
+fn svg(points: &[DVec3], profiles: &[Profile], corners: &[DVec3]) -> String {
+    let Some([x, y]) = profiles.first().map(|p| p.axes) else {
+        return String::new();
+    };
+    // Down the page.
+    let flat = |p: DVec3| [(p - points[0]).dot(x), -(p - points[0]).dot(y)];
+    let outlines: Vec<Vec<[f64; 2]>> = profiles
+        .iter()
+        .map(|profile| profile.outline.iter().map(|&p| flat(p)).collect())
+        .collect();
+    let cell: Vec<[f64; 2]> = corners.iter().map(|&p| flat(p)).collect();
+    let all = || outlines.iter().flatten().chain(&cell);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for p in all() {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(p[axis]);
+            high[axis] = high[axis].max(p[axis]);
+        }
+    }
+    let span = (high[0] - low[0]).max(high[1] - low[1]);
+    let span = if span > 0.0 { span } else { 1.0 };
+    let scale = 760.0 / span;
+    let place = |p: [f64; 2]| {
+        [
+            20.0 + (p[0] - low[0]) * scale,
+            20.0 + (p[1] - low[1]) * scale,
+        ]
+    };
+    let path = |points: &[[f64; 2]]| {
+        let mut text = String::new();
+        for &p in points {
+            let [x, y] = place(p);
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{x:.3},{y:.3} ");
+        }
+        text.trim_end().to_string()
+    };
+    let mut text = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 800\">\n<rect width=\"800\" height=\"800\" \
+         fill=\"white\"/>\n",
+    );
+    for (outline, &point) in outlines.iter().zip(points) {
+        let [px, py] = place(flat(point));
+        let _ = writeln!(
+            text,
+            "<polygon points=\"{}\" fill=\"#cfe0f5\" stroke=\"#1f4e96\" stroke-width=\"1.5\"/>\n<circle cx=\"{px:.3}\" \
+             cy=\"{py:.3}\" r=\"3\" fill=\"#1f4e96\"/>",
+            path(outline)
+        );
+    }
+    for (i, &a) in cell.iter().enumerate() {
+        if cell.len() == 1 {
+            let [cx, cy] = place(a);
+            let _ = writeln!(
+                text,
+                "<circle cx=\"{cx:.3}\" cy=\"{cy:.3}\" r=\"4\" fill=\"#b22222\"/>"
+            );
+        }
+        for &b in &cell[..i] {
+            let _ = writeln!(
+                text,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"#b22222\" stroke-width=\"2\"/>",
+                path(&[a, b])
+            );
+        }
+    }
+    text.push_str("</svg>\n");
+    text
+}
+
+/// Several meshes as one.
+fn together(meshes: Vec<Mesh>) -> Result<Mesh> {
+    let mut all = MeshParts::default();
+    for mesh in meshes {
+        let parts = mesh.into_parts();
+        let first = all.positions.len() as u32;
+        all.positions.extend(parts.positions);
+        let moved = parts.triangles.iter().map(|t| t.map(|v| v + first));
+        all.triangles.extend(moved);
+        all.precision = parts.precision;
+    }
+    Mesh::new(all).map_err(Error::Internal)
+}
+
+/// Three numbers with commas between them.
+fn parse_point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>())
+        .collect::<Result<_, _>>()
+        .map_err(|e| format!("{e}; expected three numbers as in 1,0,-2.5"))?;
+    match numbers[..] {
+        [x, y, z] if numbers.iter().all(|n| n.is_finite()) => Ok(DVec3::new(x, y, z)),
+        _ => Err("expected three numbers as in 1,0,-2.5".into()),
+    }
+}

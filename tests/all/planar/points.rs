@@ -1,0 +1,297 @@
+//! No viewpoint of a segment sees more than its extent claims, and one sees as much.
+
+use glam::DVec2;
+use lodmark::bound::planar::{
+    Aperture, Rays, SegmentCell, segment_error, segment_extent, segment_extents, viewpoint_extent,
+};
+
+use super::seen::{angle, between, cases, largest};
+
+struct Case {
+    cell: [DVec2; 2],
+    point: DVec2,
+    direction: DVec2,
+    theta: f64,
+}
+
+impl Case {
+    fn cell(&self) -> SegmentCell {
+        SegmentCell::between(self.cell[0], self.cell[1]).expect("finite ends")
+    }
+
+    fn viewpoint(&self, s: f64) -> DVec2 {
+        self.cell[0] + (self.cell[1] - self.cell[0]) * s
+    }
+
+    /// The largest angle that sampling finds between the point and itself moved by `length`.
+    fn sampled(&self, length: f64) -> f64 {
+        let moved = self.point + self.direction * length;
+        largest(|s| angle(self.viewpoint(s), self.point, moved), 160).0
+    }
+}
+
+fn draw(stream: u64) -> impl Iterator<Item = Case> {
+    let (count, mut random) = cases(stream);
+    (0..count).map(move |i| {
+        let mut at = |size: f64| {
+            DVec2::new(
+                between(&mut random, -size, size),
+                between(&mut random, -size, size),
+            )
+        };
+        let (a, b, point) = (at(5.0), at(5.0), at(12.0));
+        let theta = match i % 4 {
+            0 => between(&mut random, 0.001, 0.01),
+            3 => between(&mut random, 0.5, 1.5),
+            _ => between(&mut random, 0.01, 0.5),
+        };
+        Case {
+            // Some cells are one viewpoint.
+            cell: [a, if i % 16 == 5 { a } else { b }],
+            point,
+            direction: DVec2::from_angle(between(&mut random, 0.0, std::f64::consts::TAU)),
+            theta,
+        }
+    })
+}
+
+#[test]
+fn a_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
+    let (mut limited, mut inner, mut unbounded) = (0, 0, 0);
+    for (i, case) in draw(1).enumerate() {
+        let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
+        let extent = segment_extent(&case.cell(), case.point, case.direction, aperture);
+        let theta = case.theta;
+        if extent.length == f64::INFINITY {
+            unbounded += 1;
+            assert!(extent.viewpoint.is_none(), "case {i}");
+            for length in [1e-3, 1.0, 30.0, 1e4, 1e7] {
+                let seen = case.sampled(length);
+                assert!(
+                    seen <= theta * (1.0 + 1e-9) + 1e-12,
+                    "case {i}: {seen} at {length}"
+                );
+            }
+            continue;
+        }
+        limited += 1;
+        let viewpoint = extent.viewpoint.expect("a limit has its viewpoint");
+        let ends = case.cell.iter().any(|&e| e.distance(viewpoint) < 1e-9);
+        inner += usize::from(!ends);
+        let moved = case.point + case.direction * extent.length;
+        let from_there = angle(viewpoint, case.point, moved);
+        assert!(
+            (from_there - theta).abs() < 1e-6 * theta,
+            "case {i}: {from_there} and not {theta}"
+        );
+        let seen = case.sampled(extent.length);
+        assert!(seen <= theta * (1.0 + 1e-8), "case {i}: {seen} > {theta}");
+        let beyond = case.sampled(extent.length * (1.0 + 1e-4));
+        assert!(
+            beyond > theta,
+            "case {i}: {beyond} <= {theta} beyond the claim"
+        );
+    }
+    assert!(
+        limited > inner && inner > limited / 20 && unbounded > limited / 50,
+        "{limited} {inner} {unbounded}"
+    );
+}
+
+#[test]
+fn a_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
+    for (i, case) in draw(2).enumerate() {
+        if case.cell[0] == case.cell[1] {
+            continue;
+        }
+        let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
+        let along = case.cell[1] - case.cell[0];
+        let line = SegmentCell::line(case.cell[0], along).expect("two points");
+        let extent = segment_extent(&line, case.point, case.direction, aperture);
+        // Viewpoints of the whole line, as the tangent of an angle about the foot of the point.
+        let unit = along / along.length();
+        let foot = case.cell[0] + unit * (case.point - case.cell[0]).dot(unit);
+        let height = case.point.distance(foot);
+        let sampled = |length: f64| {
+            let moved = case.point + case.direction * length;
+            let seen = |s: f64| {
+                let turn = (s - 0.5) * std::f64::consts::PI * 0.999_999;
+                angle(foot + unit * (height * turn.tan()), case.point, moved)
+            };
+            largest(seen, 400).0
+        };
+        let seen = sampled(extent.length);
+        assert!(
+            seen <= case.theta * (1.0 + 1e-6),
+            "case {i}: {seen} > {}",
+            case.theta
+        );
+        let beyond = sampled(extent.length * (1.0 + 1e-4));
+        assert!(beyond > case.theta, "case {i}: {beyond} <= {}", case.theta);
+    }
+}
+
+#[test]
+fn the_worst_viewpoint_of_a_moved_point_is_missed() {
+    let mut touching = 0;
+    for (i, case) in draw(3).enumerate() {
+        let moved = case.point + case.direction * (case.theta * 20.0);
+        let worst = segment_error(&case.cell(), case.point, moved);
+        let sampled = largest(|s| angle(case.viewpoint(s), case.point, moved), 400).0;
+        if worst.angle == std::f64::consts::PI {
+            touching += 1;
+            let viewpoint = worst.viewpoint.expect("a contact");
+            let away = viewpoint.distance(case.point) + viewpoint.distance(moved);
+            assert!((away - case.point.distance(moved)).abs() < 1e-9, "case {i}");
+            continue;
+        }
+        assert!(
+            sampled <= worst.angle + 1e-9,
+            "case {i}: {sampled} > {}",
+            worst.angle
+        );
+        assert!(
+            worst.angle <= sampled * (1.0 + 1e-4),
+            "case {i}: {} > {sampled}",
+            worst.angle
+        );
+        let viewpoint = worst.viewpoint.expect("an angle is seen from somewhere");
+        let there = angle(viewpoint, case.point, moved);
+        assert!((there - worst.angle).abs() < 1e-9, "case {i}");
+    }
+    assert!(
+        touching > 5,
+        "only {touching} replaced points touch their cell"
+    );
+}
+
+#[test]
+fn a_column_of_extents_has_other_bits_than_one_by_one() {
+    let all: Vec<Case> = draw(4).collect();
+    let cell = all[0].cell();
+    let aperture = Aperture::radians(0.02).expect("small");
+    let column = |f: fn(&Case) -> f64| all.iter().map(f).collect::<Vec<f64>>();
+    let (x, y) = (column(|c| c.point.x), column(|c| c.point.y));
+    let (dx, dy) = (column(|c| c.direction.x), column(|c| c.direction.y));
+    let rays = Rays {
+        x: &x,
+        y: &y,
+        dx: &dx,
+        dy: &dy,
+    };
+    let (mut lengths, mut viewpoints) = (vec![0.0; all.len()], vec![0.0; all.len()]);
+    segment_extents(&cell, rays, aperture, &mut lengths, &mut viewpoints).expect("equal columns");
+    for (i, case) in all.iter().enumerate() {
+        let one = segment_extent(&cell, case.point, case.direction, aperture);
+        assert_eq!(one.length.to_bits(), lengths[i].to_bits(), "case {i}");
+        match one.viewpoint {
+            Some(v) => assert_eq!(v, cell.viewpoint(viewpoints[i]), "case {i}"),
+            None => assert!(viewpoints[i].is_nan(), "case {i}"),
+        }
+    }
+    let error = segment_extents(&cell, rays, aperture, &mut lengths[1..], &mut viewpoints);
+    assert!(error.is_err_and(|e| e.exit_code() == 2));
+}
+
+#[test]
+fn a_point_at_a_viewpoint_may_still_move() {
+    let aperture = Aperture::degrees(10.0).expect("below 90");
+    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    for x in [-1.0, -0.3, 0.0, 1.0] {
+        for gamma in [0.0, 0.4, 1.57, 3.0, 4.0] {
+            let d = DVec2::from_angle(gamma);
+            let extent = segment_extent(&cell, DVec2::new(x, 0.0), d, aperture);
+            assert_eq!(extent.length, 0.0, "{x} {gamma}");
+            assert_eq!(extent.viewpoint, Some(DVec2::new(x, 0.0)));
+        }
+    }
+    assert_eq!(
+        viewpoint_extent(DVec2::ONE, DVec2::ONE, DVec2::X, aperture),
+        0.0
+    );
+}
+
+#[test]
+fn a_point_on_the_line_beside_its_segment_is_taken_for_one_in_it() {
+    let theta = 0.1;
+    let aperture = Aperture::radians(theta).expect("small");
+    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let extent = segment_extent(&cell, DVec2::new(4.0, 0.0), DVec2::Y, aperture);
+    assert!(
+        (extent.length - 3.0 * theta.tan()).abs() < 1e-12,
+        "{extent:?}"
+    );
+    assert_eq!(extent.viewpoint, Some(DVec2::X));
+    let away = segment_extent(&cell, DVec2::new(4.0, 0.0), DVec2::X, aperture);
+    assert_eq!(away.length, f64::INFINITY);
+    let toward = segment_extent(&cell, DVec2::new(4.0, 0.0), -DVec2::X, aperture);
+    assert_eq!(toward.length, 3.0);
+}
+
+#[test]
+fn without_tolerance_a_point_may_move_across_the_sight() {
+    let none = Aperture::radians(0.0).expect("zero is an angle");
+    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let line = SegmentCell::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
+    for d in [
+        DVec2::Y,
+        DVec2::X,
+        -DVec2::Y,
+        -DVec2::X,
+        DVec2::from_angle(0.3),
+    ] {
+        for cell in [cell, line] {
+            let extent = segment_extent(&cell, DVec2::new(0.2, 3.0), d, none);
+            assert_eq!(extent.length, 0.0, "{d}");
+        }
+    }
+    let viewpoint = SegmentCell::on_x_axis(2.0, 2.0);
+    let point = DVec2::new(2.0, 3.0);
+    assert_eq!(
+        segment_extent(&viewpoint, point, DVec2::Y, none).length,
+        f64::INFINITY
+    );
+    assert_eq!(
+        segment_extent(&viewpoint, point, -DVec2::Y, none).length,
+        3.0
+    );
+    assert_eq!(
+        segment_extent(&viewpoint, point, DVec2::X, none).length,
+        0.0
+    );
+}
+
+#[test]
+fn an_angle_that_bounds_nothing_is_taken() {
+    for angle in [90.0, 120.0, -0.1, f64::NAN, f64::INFINITY] {
+        let error = Aperture::degrees(angle).expect_err("no half-aperture");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("less than 90"), "{error}");
+    }
+    assert!(Aperture::radians(std::f64::consts::FRAC_PI_2).is_err());
+    let wide = Aperture::degrees(89.9999).expect("below 90");
+    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let extent = segment_extent(&cell, DVec2::new(0.0, 1.0), DVec2::X, wide);
+    let seen = largest(
+        |s| {
+            angle(
+                DVec2::new(2.0 * s - 1.0, 0.0),
+                DVec2::new(0.0, 1.0),
+                DVec2::new(extent.length, 1.0),
+            )
+        },
+        400,
+    );
+    assert!((seen.0 - wide.angle()).abs() < 1e-9, "{seen:?} {extent:?}");
+}
+
+#[test]
+fn a_cell_without_place_is_taken() {
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(SegmentCell::between(DVec2::ZERO, DVec2::new(bad, 0.0)).is_err());
+        assert!(SegmentCell::line(DVec2::new(bad, 0.0), DVec2::X).is_err());
+    }
+    assert!(SegmentCell::line(DVec2::ZERO, DVec2::ZERO).is_err());
+    let tiny = SegmentCell::between(DVec2::ZERO, DVec2::new(1e-200, 1e-200)).expect("two points");
+    assert!(tiny.ends()[1] > 1.4e-200, "{tiny:?}");
+}
