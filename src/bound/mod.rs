@@ -5,5 +5,6 @@
 //! claims.
 
 pub mod cell;
+pub mod face;
 pub mod planar;
 pub mod point;
