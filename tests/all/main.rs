@@ -2,6 +2,7 @@
 
 mod appearance;
 mod architecture;
+mod billboards;
 mod cli;
 mod collapse;
 mod compare;

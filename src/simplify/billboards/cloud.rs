@@ -130,7 +130,7 @@ impl Scene<'_> {
         } else {
             slab.normal
         };
-        let right = -towards.perp();
+        let right = towards.perp();
         let axes = [right, DVec2::ZERO, towards].map(|a| up.place(a, 0.0));
         let axes = [axes[0], up.place(DVec2::ZERO, 1.0), axes[2]];
         let triangles = |numbers: &mut dyn Iterator<Item = u32>| {
