@@ -7,6 +7,7 @@
 pub mod cell;
 pub mod correspondence;
 pub mod envelope;
+pub mod face;
 pub mod heuristics;
 pub mod planar;
 pub mod point;

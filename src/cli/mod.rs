@@ -9,6 +9,7 @@ macro_rules! answer {
 
 mod account;
 mod answers;
+mod billboards;
 mod bound;
 mod check;
 mod check_rays;
@@ -86,6 +87,7 @@ enum Command {
     CheckRays(check_rays::Options),
     Inspect(inspect::Options),
     Levels(levels::Options),
+    Billboards(billboards::Options),
     Golden(golden::Options),
     Selfcheck(selfcheck::Options),
     Demo(demo::Options),
@@ -160,6 +162,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
         Command::Levels(options) => levels::run(&options, common, &terminal),
+        Command::Billboards(options) => billboards::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
         Command::Demo(options) => demo::run(&options, common, &terminal),
         Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),

@@ -1,4 +1,4 @@
-//! PNG pictures: 8-bit grey and RGB, without alpha.
+//! PNG pictures: 8-bit grey and RGB, without alpha, and RGB with alpha to be written only.
 //!
 //! Limits on reading: 16,384 pixels per side and no larger than what the bytes of the file can decompress to, so that
 //! a small hostile file cannot ask for much memory.
@@ -74,6 +74,16 @@ pub fn write_rgb(path: &Path, picture: &Plane<[u8; 3]>) -> Result<()> {
     let size = checked_size(picture)?;
     let bytes = picture.values().as_flattened();
     write(path, bytes, size, ExtendedColorType::Rgb8)
+}
+
+/// Writes an 8-bit RGB picture with opacity; an existing file is replaced as a whole. [`read`] refuses such files.
+///
+/// # Errors
+/// As [`write_grey`].
+pub fn write_rgba(path: &Path, picture: &Plane<[u8; 4]>) -> Result<()> {
+    let size = checked_size(picture)?;
+    let bytes = picture.values().as_flattened();
+    write(path, bytes, size, ExtendedColorType::Rgba8)
 }
 
 fn checked_size<T: Copy>(picture: &Plane<T>) -> Result<(u32, u32)> {

@@ -4,6 +4,7 @@
 //! ended; [`simplify_guided`] does so by a visibility that was measured before. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
 //! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
+pub mod billboards;
 mod fan;
 pub mod image;
 pub mod memoryless;

@@ -2,6 +2,7 @@
 
 mod appearance;
 mod architecture;
+mod billboards;
 mod bound;
 mod bound_command;
 mod cli;

@@ -6,5 +6,7 @@ mod faces;
 mod points;
 #[path = "planar/seen.rs"]
 mod seen;
+#[path = "planar/space.rs"]
+mod space;
 #[path = "planar/vectors.rs"]
 mod vectors;

@@ -5,6 +5,7 @@
 //! [`encased`]) have two triangles at every edge, oriented outward.
 //! Counts beyond what a function's documentation allows are brought into that range.
 
+mod city;
 mod cube;
 mod encased;
 mod engine;
@@ -21,6 +22,7 @@ use glam::DVec3;
 
 use super::{Attributes, ChannelKind, Mesh, MeshParts};
 
+pub use city::{city, forest, trees};
 pub use cube::cube;
 pub use encased::encased;
 pub use engine::engine;

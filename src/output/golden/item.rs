@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{bounds, files, hidden, pictures, results, visibility};
+use super::{billboards, bounds, files, hidden, pictures, results, visibility};
 use crate::{
     Progress, Result,
     mesh::{Mesh, content_sha256},
@@ -75,6 +75,11 @@ pub const GROUPS: &[Group] = &[
         name: "hidden",
         about: "guided by visibility, and interiors in some views",
         run: hidden::hidden,
+    },
+    Group {
+        name: "billboards",
+        about: "planes, quads and textures for two view cells",
+        run: billboards::clouds,
     },
     Group {
         name: "replay",

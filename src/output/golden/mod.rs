@@ -8,6 +8,7 @@
 //! this program was built, and `lodmark selfcheck` holds the machine it runs on against it. The whole set takes about
 //! three seconds in release, so that slow machines and emulators can run it too.
 
+mod billboards;
 mod bounds;
 mod files;
 mod folder;

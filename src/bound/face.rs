@@ -1,0 +1,150 @@
+//! Which planes a face in space may be projected on, along the plane's normal.
+//!
+//! Exact where the cell is a half-space or a plane: there the extent of a point grows with its height above the
+//! boundary and with nothing else (Eisemann & Décoret 2007, section 5), so that the limit is linear and the corners of
+//! the face decide, with the points where it crosses the boundary. For other cells there is no closed form yet, and the
+//! bound here is conservative: a point that moves by no more than `distance sin(theta)` is never seen to move by more
+//! than theta, whatever the direction.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    cell::{Shape, ViewCell},
+    planar::{Aperture, Interval, tangents},
+};
+use crate::num::math;
+
+/// Offsets of valid planes, and what they are worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceInterval {
+    /// Offsets `rho` of the planes `x . d = rho` that the face may be projected on.
+    pub offsets: Interval,
+    /// True where every other offset is too far for some viewer; false where the bound is conservative: all of these
+    /// offsets are valid, others may be.
+    pub exact: bool,
+}
+
+/// The planes across the unit vector `direction` that a face with these corners may be projected on, seen from `cell`
+/// within `aperture`. Nothing is left where part of the face lies in the cell, unless that part lies in the plane.
+#[must_use]
+pub fn face_interval(
+    cell: &ViewCell,
+    corners: &[DVec3; 3],
+    direction: DVec3,
+    aperture: Aperture,
+) -> FaceInterval {
+    match *cell.shape() {
+        Shape::HalfSpace { point, normal } => FaceInterval {
+            offsets: above_plane(point, normal, corners, direction, aperture),
+            exact: true,
+        },
+        Shape::Plane { point, normal } => FaceInterval {
+            // What is below a plane sees it as what is above its other side does.
+            offsets: beside_plane(point, normal, corners, direction, aperture),
+            exact: true,
+        },
+        _ => FaceInterval {
+            offsets: conservative_interval(
+                cell.distance_to_triangle(*corners),
+                corners,
+                direction,
+                aperture,
+            ),
+            exact: false,
+        },
+    }
+}
+
+/// The offsets that move no point of a face by more than `distance sin(aperture)`, where no viewer is closer to the
+/// face than `distance`: all valid, not all that are.
+#[must_use]
+pub fn conservative_interval(
+    distance: f64,
+    corners: &[DVec3; 3],
+    direction: DVec3,
+    aperture: Aperture,
+) -> Interval {
+    let reach = distance * aperture.sin();
+    corners.iter().fold(Interval::ALL, |all, p| {
+        let rho = p.dot(direction);
+        all.and(Interval {
+            min: rho - reach,
+            max: rho + reach,
+        })
+    })
+}
+
+/// The extents of a point at height 1 above a plane of viewers: against the direction and along it.
+fn rates(normal: DVec3, direction: DVec3, aperture: Aperture) -> [f64; 2] {
+    let up = direction.dot(normal);
+    let flat = math::length(direction - normal * up);
+    [-1.0, 1.0].map(|sign| {
+        let turned = DVec2::new(flat, sign * up);
+        let limits = tangents(turned, aperture).into_iter().flatten();
+        limits.fold(f64::INFINITY, |least, t| least.min(t.length))
+    })
+}
+
+/// For viewers on the side of the plane that `normal` points away from.
+fn above_plane(
+    point: DVec3,
+    normal: DVec3,
+    corners: &[DVec3; 3],
+    direction: DVec3,
+    aperture: Aperture,
+) -> Interval {
+    let [against, along] = rates(normal, direction, aperture);
+    let limit = |p: DVec3, height: f64| {
+        let (rho, height) = (p.dot(direction), height.max(0.0));
+        Interval {
+            min: rho - against * height,
+            max: rho + along * height,
+        }
+    };
+    on_either_side(point, normal, corners, limit)
+}
+
+/// For viewers on the plane.
+fn beside_plane(
+    point: DVec3,
+    normal: DVec3,
+    corners: &[DVec3; 3],
+    direction: DVec3,
+    aperture: Aperture,
+) -> Interval {
+    let [[against, along], [against_below, along_below]] =
+        [normal, -normal].map(|n| rates(n, direction, aperture));
+    let limit = |p: DVec3, height: f64| {
+        let rho = p.dot(direction);
+        let (down, up) = if height < 0.0 {
+            (against_below, along_below)
+        } else {
+            (against, along)
+        };
+        Interval {
+            min: rho - down * height.abs(),
+            max: rho + up * height.abs(),
+        }
+    };
+    on_either_side(point, normal, corners, limit)
+}
+
+/// What a limit that is linear on each side of a plane leaves of a face: its corners and where its edges cross.
+fn on_either_side(
+    point: DVec3,
+    normal: DVec3,
+    corners: &[DVec3; 3],
+    limit: impl Fn(DVec3, f64) -> Interval,
+) -> Interval {
+    let heights = corners.map(|p| (p - point).dot(normal));
+    let mut all = Interval::ALL;
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        all = all.and(limit(corners[i], heights[i]));
+        if (heights[i] < 0.0) != (heights[j] < 0.0) {
+            let t = heights[i] / (heights[i] - heights[j]);
+            all = all.and(limit(corners[i] + (corners[j] - corners[i]) * t, 0.0));
+        }
+    }
+    all
+}

@@ -1,0 +1,64 @@
+//! Cases of billboards: planes, what is on them, and a texture, for viewers before a city and in a forest.
+
+use glam::DVec3;
+
+use super::Collector;
+use crate::{
+    Error, Result, Silent,
+    bound::{cell::ViewCell, planar::Aperture},
+    mesh::{Mesh, generate},
+    output::png::Picture,
+    simplify::billboards::{Limit, Options, billboards},
+};
+
+pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
+    let segment = [DVec3::new(-10.0, 0.0, 0.0), DVec3::new(10.0, 0.0, 0.0)];
+    let cases = [
+        (
+            "city",
+            part(&generate::city(), 600)?,
+            ViewCell::half_space(DVec3::new(0.0, -6.0, 0.0), DVec3::Y)?,
+        ),
+        (
+            "forest",
+            generate::trees(200, 80.0),
+            ViewCell::segment(segment)?,
+        ),
+    ];
+    for (name, mesh, cell) in cases {
+        let options = Options {
+            directions: 30,
+            texels: 96,
+            ..Options::within(Limit::Angle(Aperture::degrees(0.4)?))
+        };
+        let cloud = billboards(&mesh, &cell, &options, &Silent)?;
+        let mut bytes = Vec::new();
+        for quad in &cloud.quads {
+            let vectors = [&[quad.corner][..], &quad.axes].concat();
+            let numbers = vectors.iter().flat_map(|v| v.to_array()).chain(quad.size);
+            bytes.extend(numbers.flat_map(|x| x.to_bits().to_le_bytes()));
+            let counts = quad.texels.iter().chain(&quad.replaces).chain(&quad.drawn);
+            bytes.extend(counts.flat_map(|n| n.to_le_bytes()));
+        }
+        collector.bytes(&format!("{name}/quads"), &bytes);
+        let error = [cloud.displacement.horizontal, cloud.displacement.vertical];
+        let error = error.map(|x| format!("{:016x}", x.to_bits())).join(" ");
+        let counts = format!("{} {} {error}", cloud.quads.len(), cloud.kept.len());
+        collector.text(&format!("{name}/counts-displacements"), counts);
+        let busiest = cloud.quads.iter().max_by_key(|quad| quad.replaces.len());
+        if let Some(quad) = busiest {
+            let texture = quad.texture(&mesh);
+            let tones = texture.map(|[r, g, b, _]| [r, g, b]);
+            collector.plane(&format!("{name}/opacity"), &texture.map(|[.., a]| a));
+            collector.plane(&format!("{name}/texture"), &tones);
+            collector.shown(Picture::Rgb(tones));
+        }
+    }
+    Ok(())
+}
+
+/// The first triangles of a mesh.
+fn part(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
+    let kept = mesh.triangles().iter().take(triangles).copied().collect();
+    Mesh::from_triangles(mesh.positions().to_vec(), kept).map_err(Error::Internal)
+}

@@ -1,0 +1,245 @@
+//! The cloud: planes become quads, and what finds no plane stays as it is.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{
+    Displacement, Limit, Options, Quad,
+    error::{displacement, eyes},
+    flat::{self, Level},
+    plan::{Plan, PlanCell, PlanFace},
+    quad::texels,
+    select::{Slab, select},
+};
+use crate::{
+    Progress, Result,
+    bound::{cell::ViewCell, planar::Interval},
+    mesh::Mesh,
+    num::math,
+};
+
+/// The resolution of textures where no angle asks for one.
+const DEFAULT_TEXEL: f64 = 0.002;
+
+/// A scene on quads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cloud {
+    /// The quads: vertical ones in the order in which they were chosen, then single walls, then horizontal ones.
+    pub quads: Vec<Quad>,
+    /// Triangles that stay as they are, ascending: those that viewers stand on, under or in, and slanted ones that
+    /// share a plane with nothing.
+    pub kept: Vec<u32>,
+    /// The largest displacements of vertices.
+    pub displacement: Displacement,
+}
+
+/// What all quads have in common.
+struct Scene<'a> {
+    mesh: &'a Mesh,
+    cell: &'a ViewCell,
+    plan_cell: PlanCell,
+    options: &'a Options,
+}
+
+/// Replaces a scene by quads for the viewers of `cell`. Planes, quads and textures depend on the mesh, the cell and the
+/// options alone. O(directions · faces · log faces), and some more per quad.
+///
+/// # Errors
+/// [`Error::Usage`](crate::Error::Usage) where an option is out of range or the cell, seen from above, covers the
+/// ground; [`Error::Interrupted`](crate::Error::Interrupted).
+pub fn billboards(
+    mesh: &Mesh,
+    cell: &ViewCell,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Cloud> {
+    options.check()?;
+    let scene = Scene {
+        mesh,
+        cell,
+        plan_cell: PlanCell::new(cell, options.up)?,
+        options,
+    };
+    let plan = Plan::new(mesh, &scene.plan_cell, options.up);
+    let (flat, faces): (Vec<PlanFace>, Vec<PlanFace>) = plan
+        .faces
+        .into_iter()
+        .partition(|face| !face.is_wall() && face.area == DVec2::ZERO);
+    let mut kept = plan.touched;
+    let (mut slabs, alone) = select(&faces, &scene.plan_cell, options, progress)?;
+    for number in alone {
+        match own_plane(&faces[number as usize]) {
+            Some((normal, rho)) => slabs.push(Slab {
+                normal,
+                rho,
+                faces: vec![number],
+            }),
+            None => kept.extend(&faces[number as usize].triangles),
+        }
+    }
+    let mut quads = Vec::new();
+    let vertical: Vec<Option<Quad>> = slabs
+        .par_iter()
+        .map(|slab| scene.vertical(slab, &faces))
+        .collect();
+    for (slab, quad) in slabs.iter().zip(vertical) {
+        match quad {
+            Some(quad) => quads.push(quad),
+            None => kept.extend(
+                slab.faces
+                    .iter()
+                    .flat_map(|&f| &faces[f as usize].triangles),
+            ),
+        }
+    }
+    quads.extend(scene.horizontal(&flat));
+    kept.sort_unstable();
+    progress.step("measure displacements", 0, 0)?;
+    let eyes = eyes(mesh, cell, options.up);
+    let displacements: Vec<Displacement> = quads
+        .par_iter()
+        .map(|quad| displacement(mesh, quad, &scene.plan_cell, options.up, eyes))
+        .collect();
+    let displacement = displacements
+        .into_iter()
+        .fold(Displacement::default(), Displacement::and);
+    Ok(Cloud {
+        quads,
+        kept,
+        displacement,
+    })
+}
+
+/// The vertical plane that a wall stands in.
+fn own_plane(face: &PlanFace) -> Option<(DVec2, f64)> {
+    let [a, b] = face.segments[0];
+    let across = (b - a).perp();
+    let length = math::sqrt(across.dot(across));
+    (face.is_wall() && length > 0.0).then(|| {
+        let normal = across / length;
+        (normal, ((a + b) / 2.0).dot(normal))
+    })
+}
+
+impl Scene<'_> {
+    /// The quad of a vertical plane; `None` where its faces are seen from the edge only.
+    fn vertical(&self, slab: &Slab, faces: &[PlanFace]) -> Option<Quad> {
+        let up = self.options.up;
+        let towards = if self.plan_cell.somewhere().dot(slab.normal) < slab.rho {
+            -slab.normal
+        } else {
+            slab.normal
+        };
+        let right = towards.perp();
+        let axes = [right, DVec2::ZERO, towards].map(|a| up.place(a, 0.0));
+        let axes = [axes[0], up.place(DVec2::ZERO, 1.0), axes[2]];
+        let triangles = |numbers: &mut dyn Iterator<Item = u32>| {
+            let mut all: Vec<u32> = numbers
+                .flat_map(|f| faces[f as usize].triangles.iter().copied())
+                .collect();
+            all.sort_unstable();
+            all
+        };
+        let replaces = triangles(&mut slab.faces.iter().copied());
+        let origin = up.place(slab.normal * slab.rho, 0.0);
+        let mut quad = self.framed(origin, axes, replaces)?;
+        let limits = self.plan_cell.limits(slab.normal, self.options.limit);
+        let (low, high) = (
+            quad.corner.dot(axes[0]),
+            quad.corner.dot(axes[0]) + quad.size[0],
+        );
+        let shown = |&f: &u32| {
+            let face = &faces[f as usize];
+            let along = || face.segments.iter().flatten().map(|p| p.dot(right));
+            let beside = along().all(|x| x < low) || along().all(|x| x > high);
+            slab.faces.binary_search(&f).is_ok()
+                || !beside && face.interval(&limits).contains(slab.rho)
+        };
+        quad.drawn = triangles(&mut (0..faces.len() as u32).filter(shown));
+        Some(quad)
+    }
+
+    /// The quads of horizontal faces.
+    fn horizontal(&self, faces: &[PlanFace]) -> Vec<Quad> {
+        let up = self.options.up;
+        let mut triangles: Vec<u32> = faces
+            .iter()
+            .flat_map(|f| f.triangles.iter().copied())
+            .collect();
+        triangles.sort_unstable();
+        let bound = |&t: &u32| {
+            let interval = flat::heights(self.mesh, t, self.cell, up, self.options.limit);
+            (interval, t)
+        };
+        let bounded: Vec<(Interval, u32)> = triangles.par_iter().map(bound).collect();
+        let levels = if self.options.any_height {
+            let height = |&t: &u32| up.height(self.mesh.corners(t as usize)[0]);
+            let (low, high) = (
+                triangles.iter().map(height).fold(f64::INFINITY, f64::min),
+                triangles
+                    .iter()
+                    .map(height)
+                    .fold(f64::NEG_INFINITY, f64::max),
+            );
+            let one = Level {
+                height: low + (high - low) / 2.0,
+                triangles,
+            };
+            if one.triangles.is_empty() {
+                Vec::new()
+            } else {
+                vec![one]
+            }
+        } else {
+            flat::levels(bounded.clone())
+        };
+        let axes = [(DVec2::X, 0.0), (DVec2::Y, 0.0), (DVec2::ZERO, 1.0)];
+        let axes = axes.map(|(plan, height)| up.place(plan, height));
+        let quad = |level: Level| {
+            let origin = up.place(DVec2::ZERO, level.height);
+            let mut quad = self.framed(origin, axes, level.triangles)?;
+            quad.horizontal = true;
+            let shown = |&&(interval, t): &&(Interval, u32)| {
+                interval.contains(level.height) || quad.replaces.binary_search(&t).is_ok()
+            };
+            quad.drawn = bounded.iter().filter(shown).map(|&(_, t)| t).collect();
+            Some(quad)
+        };
+        levels.into_iter().filter_map(quad).collect()
+    }
+
+    /// The rectangle of what a plane through `origin` replaces; `None` where it has no area.
+    fn framed(&self, origin: DVec3, axes: [DVec3; 3], replaces: Vec<u32>) -> Option<Quad> {
+        let corners = || replaces.iter().flat_map(|&t| self.mesh.corners(t as usize));
+        let range = |axis: DVec3| {
+            corners().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
+                [low.min(p.dot(axis)), high.max(p.dot(axis))]
+            })
+        };
+        let [[left, right], [bottom, top]] = [range(axes[0]), range(axes[1])];
+        let size = [right - left, top - bottom];
+        if !(size[0] > 0.0 && size[1] > 0.0) {
+            return None;
+        }
+        let up = self.options.up;
+        let distance = replaces.iter().fold(f64::INFINITY, |least, &t| {
+            let [a, b, c] = self.mesh.corners(t as usize).map(|p| up.plan(p));
+            let to = |p, q| self.plan_cell.distance(p, q);
+            least.min(to(a, b)).min(to(b, c)).min(to(c, a))
+        });
+        let angle = match self.options.limit {
+            Limit::Angle(aperture) => aperture.angle(),
+            Limit::Distance(_) => DEFAULT_TEXEL,
+        };
+        let most = self.options.texels;
+        Some(Quad {
+            corner: axes[0] * left + axes[1] * bottom + axes[2] * origin.dot(axes[2]),
+            axes,
+            size,
+            texels: size.map(|side| texels(side, distance, angle, most)),
+            replaces,
+            drawn: Vec::new(),
+            horizontal: false,
+        })
+    }
+}

@@ -1,0 +1,83 @@
+//! How far viewers see points displaced: across the horizon, exactly at every vertex, and up or down, from sampled
+//! viewpoints.
+
+use glam::{DVec2, DVec3};
+
+use super::{Quad, plan::PlanCell, plan::Up};
+use crate::{
+    bound::{cell::ViewCell, planar::segment_error},
+    mesh::Mesh,
+    num::math,
+};
+
+/// The largest displacements of vertices, in radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Displacement {
+    /// Across the horizon, over all viewpoints.
+    pub horizontal: f64,
+    /// Up or down, from the viewpoints nearest to every vertex and the ends of the cell, at the lowest and highest eye:
+    /// those of the cell, or of the scene where the cell has no end.
+    pub vertical: f64,
+}
+
+impl Displacement {
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            horizontal: self.horizontal.max(other.horizontal),
+            vertical: self.vertical.max(other.vertical),
+        }
+    }
+}
+
+/// The lowest and highest eye.
+pub(super) fn eyes(mesh: &Mesh, cell: &ViewCell, up: Up) -> [f64; 2] {
+    let heights = |points: &[DVec3]| {
+        points
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &p| {
+                [low.min(up.height(p)), high.max(up.height(p))]
+            })
+    };
+    heights(cell.corners().unwrap_or(mesh.positions()))
+}
+
+/// What the vertices of the triangles that a quad replaces are displaced by.
+pub(super) fn displacement(
+    mesh: &Mesh,
+    quad: &Quad,
+    cell: &PlanCell,
+    up: Up,
+    eyes: [f64; 2],
+) -> Displacement {
+    let mut worst = Displacement::default();
+    for &t in &quad.replaces {
+        for p in mesh.corners(t as usize) {
+            let s = quad.project(p);
+            let (from, to) = (up.plan(p), up.plan(s));
+            for side in &cell.sides {
+                let seen = if quad.horizontal {
+                    0.0
+                } else {
+                    segment_error(side, from, to).angle
+                };
+                worst.horizontal = worst.horizontal.max(seen);
+                let [first, last] = side.ends();
+                let foot = side.enter(from).x.clamp(first, last);
+                for x in [foot, first, last] {
+                    if !x.is_finite() {
+                        continue;
+                    }
+                    let viewer = side.viewpoint(x);
+                    for eye in eyes {
+                        let turn = |plan: DVec2, height: f64| {
+                            math::atan2(height - eye, (plan - viewer).length())
+                        };
+                        let seen = turn(from, up.height(p)) - turn(to, up.height(s));
+                        worst.vertical = worst.vertical.max(seen.abs());
+                    }
+                }
+            }
+        }
+    }
+    worst
+}

@@ -1,0 +1,384 @@
+//! The plan view: what faces and cells are when seen from above.
+//!
+//! A vertical wall is one segment; any other triangle is its three edges, because at a fixed abscissa the limit grows
+//! with the coordinate along the direction, so that its smallest value over a plan triangle lies on an edge.
+
+use glam::{DVec2, DVec3};
+
+use super::Limit;
+use crate::{
+    Error, Result,
+    bound::{
+        cell::{Shape, ViewCell},
+        planar::{Interval, Projection, SegmentCell},
+    },
+    mesh::Mesh,
+};
+
+/// Which axis points up; the other two, in cyclic order, span the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    /// The x-axis.
+    X,
+    /// The y-axis.
+    Y,
+    /// The z-axis.
+    Z,
+}
+
+impl Up {
+    /// Seen from above.
+    #[must_use]
+    pub fn plan(self, p: DVec3) -> DVec2 {
+        match self {
+            Self::X => DVec2::new(p.y, p.z),
+            Self::Y => DVec2::new(p.z, p.x),
+            Self::Z => DVec2::new(p.x, p.y),
+        }
+    }
+
+    /// Height.
+    #[must_use]
+    pub fn height(self, p: DVec3) -> f64 {
+        match self {
+            Self::X => p.x,
+            Self::Y => p.y,
+            Self::Z => p.z,
+        }
+    }
+
+    /// The point above `plan` at some height.
+    #[must_use]
+    pub fn place(self, plan: DVec2, height: f64) -> DVec3 {
+        match self {
+            Self::X => DVec3::new(height, plan.x, plan.y),
+            Self::Y => DVec3::new(plan.y, height, plan.x),
+            Self::Z => DVec3::new(plan.x, plan.y, height),
+        }
+    }
+}
+
+/// Viewers seen from above.
+#[derive(Clone, Debug)]
+pub(super) struct PlanCell {
+    /// Boundary: whoever is inside sees no more than the boundary does.
+    pub(super) sides: Vec<SegmentCell>,
+    inside: Inside,
+}
+
+#[derive(Clone, Debug)]
+enum Inside {
+    /// The cell has no inside.
+    Nothing,
+    /// A convex polygon, counter-clockwise.
+    Polygon(Vec<DVec2>),
+    /// Where `(p - point) . normal <= 0`.
+    HalfPlane { point: DVec2, normal: DVec2 },
+}
+
+impl PlanCell {
+    pub(super) fn new(cell: &ViewCell, up: Up) -> Result<Self> {
+        let everywhere = |what: &str| {
+            Err(Error::Usage(format!(
+                "seen from above, the {what} covers the ground, so that viewers are everywhere; give a cell that leaves \
+                 room for the scene, or another up axis"
+            )))
+        };
+        let nothing = |sides| {
+            Ok(Self {
+                sides,
+                inside: Inside::Nothing,
+            })
+        };
+        match cell.shape() {
+            Shape::HalfSpace { point, normal } | Shape::Plane { point, normal } => {
+                let half_space = matches!(cell.shape(), Shape::HalfSpace { .. });
+                if up.height(*normal).abs() > 1e-12 {
+                    return everywhere(if half_space { "half-space" } else { "plane" });
+                }
+                let (point, normal) = (up.plan(*point), up.plan(*normal));
+                let sides = vec![SegmentCell::line(point, normal.perp())?];
+                if !half_space {
+                    return nothing(sides);
+                }
+                let inside = Inside::HalfPlane { point, normal };
+                Ok(Self { sides, inside })
+            }
+            Shape::Line { point, direction } => {
+                let along = up.plan(*direction);
+                let point = up.plan(*point);
+                nothing(vec![if along.length_squared() < 1e-24 {
+                    SegmentCell::between(point, point)?
+                } else {
+                    SegmentCell::line(point, along)?
+                }])
+            }
+            Shape::Point(_)
+            | Shape::Segment(_)
+            | Shape::Polygon { .. }
+            | Shape::Polyhedron { .. } => {
+                let corners = cell.corners().unwrap_or_default();
+                let hull = convex_hull(corners.iter().map(|&c| up.plan(c)).collect());
+                match hull[..] {
+                    [a] => nothing(vec![SegmentCell::between(a, a)?]),
+                    [a, b] => nothing(vec![SegmentCell::between(a, b)?]),
+                    _ => {
+                        let side =
+                            |i: usize| SegmentCell::between(hull[i], hull[(i + 1) % hull.len()]);
+                        let sides = (0..hull.len()).map(side).collect::<Result<_>>()?;
+                        let inside = Inside::Polygon(hull);
+                        Ok(Self { sides, inside })
+                    }
+                }
+            }
+        }
+    }
+
+    /// True where part of the convex hull of `points` lies among the viewers, its border included; a cell without an
+    /// inside holds nothing.
+    pub(super) fn meets(&self, points: &[DVec2]) -> bool {
+        match &self.inside {
+            Inside::Nothing => false,
+            Inside::HalfPlane { point, normal } => {
+                points.iter().any(|p| (p - point).dot(*normal) <= 0.0)
+            }
+            Inside::Polygon(hull) => !(separated(hull, points) || separated(points, hull)),
+        }
+    }
+
+    /// A lower bound of the distance between viewers and the segment from `a` to `b`, 0 where they meet.
+    pub(super) fn distance(&self, a: DVec2, b: DVec2) -> f64 {
+        if self.meets(&[a, b]) {
+            return 0.0;
+        }
+        let distances = self.sides.iter().map(|side| segment_distance(side, a, b));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Some viewpoint, to tell on which side of a plane viewers are.
+    pub(super) fn somewhere(&self) -> DVec2 {
+        let side = &self.sides[0];
+        let [first, last] = side.ends();
+        let x = if first.is_finite() {
+            (first + last) / 2.0
+        } else {
+            0.0
+        };
+        side.viewpoint(x)
+    }
+
+    /// What limits projections along `direction`.
+    pub(super) fn limits(&self, direction: DVec2, limit: Limit) -> Limits {
+        match limit {
+            Limit::Angle(aperture) => {
+                let new = |side| Projection::new(side, direction, aperture);
+                Limits::Viewers(self.sides.iter().map(new).collect())
+            }
+            Limit::Distance(distance) => Limits::Distance {
+                direction,
+                distance,
+            },
+        }
+    }
+}
+
+/// True where a side of `polygon` has all of `points` outside.
+fn separated(polygon: &[DVec2], points: &[DVec2]) -> bool {
+    let n = polygon.len();
+    (0..n).any(|i| {
+        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+        let side = b - a;
+        let all = |sign: f64, of: &[DVec2], least: f64| {
+            of.iter().all(|&p| sign * side.perp_dot(p - a) > least)
+        };
+        // Of two points, either side may be the outside one.
+        [1.0, -1.0].into_iter().any(|sign| {
+            let scale = side.length_squared() * 1e-12;
+            polygon
+                .iter()
+                .all(|&p| sign * side.perp_dot(p - a) <= scale)
+                && all(sign, points, scale)
+        })
+    })
+}
+
+fn segment_distance(side: &SegmentCell, a: DVec2, b: DVec2) -> f64 {
+    let (a, b) = (side.enter(a), side.enter(b));
+    let [first, last] = side.ends();
+    let crosses = (a.y < 0.0) != (b.y < 0.0) && {
+        let x = a.x + (b.x - a.x) * (a.y / (a.y - b.y));
+        first <= x && x <= last
+    };
+    if crosses {
+        return 0.0;
+    }
+    let to_side = |p: DVec2| DVec2::new(p.x - p.x.clamp(first, last), p.y).length();
+    let to_face = |x: f64| {
+        let (p, along) = (DVec2::new(x, 0.0), b - a);
+        let t = (p - a).dot(along) / along.length_squared();
+        let t = if t.is_finite() {
+            t.clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        p.distance(a + along * t)
+    };
+    let ends = [first, last].into_iter().filter(|x| x.is_finite());
+    ends.map(to_face).fold(to_side(a).min(to_side(b)), f64::min)
+}
+
+/// The corners of the convex hull, counter-clockwise; one for a point, two for a segment.
+fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..]
+                && (b - a).perp_dot(p - a) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = half(&mut points.iter().copied());
+    hull.extend(half(&mut points.iter().rev().copied()));
+    hull
+}
+
+/// Triangles that are one and the same in plan: a wall, or the three edges of a triangle.
+#[derive(Clone, Debug)]
+pub(super) struct PlanFace {
+    /// One segment, or three.
+    pub(super) segments: Vec<[DVec2; 2]>,
+    /// The triangles.
+    pub(super) triangles: Vec<u32>,
+    /// Sum of normals times area of the triangles, each turned to the same side, seen from above.
+    pub(super) area: DVec2,
+}
+
+impl PlanFace {
+    /// True for a vertical wall.
+    pub(super) fn is_wall(&self) -> bool {
+        self.segments.len() == 1
+    }
+
+    /// The offsets that the face may be projected on.
+    pub(super) fn interval(&self, limits: &Limits) -> Interval {
+        let mut all = Interval::ALL;
+        for &[a, b] in &self.segments {
+            match limits {
+                Limits::Viewers(sides) => {
+                    for side in sides {
+                        all = all.and(side.interval(a, b));
+                        if all.is_empty() {
+                            return all;
+                        }
+                    }
+                }
+                Limits::Distance {
+                    direction,
+                    distance,
+                } => {
+                    for rho in [a.dot(*direction), b.dot(*direction)] {
+                        all = all.and(Interval {
+                            min: rho - distance,
+                            max: rho + distance,
+                        });
+                    }
+                }
+            }
+        }
+        all
+    }
+}
+
+/// A direction of projection and what limits it.
+#[derive(Clone, Debug)]
+pub(super) enum Limits {
+    /// The sides of a cell.
+    Viewers(Vec<Projection>),
+    /// A distance.
+    Distance { direction: DVec2, distance: f64 },
+}
+
+/// The faces of a mesh in plan; triangles that meet the cell are listed apart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Plan {
+    pub(super) faces: Vec<PlanFace>,
+    /// Triangles that viewers stand on, under or in.
+    pub(super) touched: Vec<u32>,
+}
+
+impl Plan {
+    pub(super) fn new(mesh: &Mesh, cell: &PlanCell, up: Up) -> Self {
+        let mut plan = Self::default();
+        let mut keyed: Vec<([u64; 12], u32, Vec<[DVec2; 2]>)> = Vec::new();
+        for t in 0..mesh.triangles().len() {
+            let corners = mesh.corners(t).map(|c| up.plan(c));
+            if cell.meets(&corners) {
+                plan.touched.push(t as u32);
+                continue;
+            }
+            let segments = segments(corners);
+            let mut key = [0; 12];
+            let coordinates = segments.iter().flatten().flat_map(|p| p.to_array());
+            for (slot, x) in key.iter_mut().zip(coordinates) {
+                // Both zeros are one place.
+                *slot = (x + 0.0).to_bits();
+            }
+            keyed.push((key, t as u32, segments));
+        }
+        keyed.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)));
+        let mut last = None;
+        for (key, t, segments) in keyed {
+            let corners = mesh.corners(t as usize);
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]) / 2.0;
+            let across = up.plan(normal);
+            if last == Some(key)
+                && let Some(face) = plan.faces.last_mut()
+            {
+                face.triangles.push(t);
+                let turned = if face.area.dot(across) < 0.0 {
+                    -across
+                } else {
+                    across
+                };
+                face.area += turned;
+            } else {
+                plan.faces.push(PlanFace {
+                    segments,
+                    triangles: vec![t],
+                    area: across,
+                });
+            }
+            last = Some(key);
+        }
+        // In the order of the mesh, not of coordinates.
+        plan.faces.sort_by_key(|face| face.triangles[0]);
+        plan
+    }
+}
+
+/// The longest edge of a triangle that is a segment in plan; else all three. Edges go from the smaller end.
+fn segments([a, b, c]: [DVec2; 3]) -> Vec<[DVec2; 2]> {
+    let ordered = |p: DVec2, q: DVec2| {
+        let first = p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).is_le();
+        if first { [p, q] } else { [q, p] }
+    };
+    let mut edges = [ordered(a, b), ordered(b, c), ordered(c, a)].to_vec();
+    edges.sort_by(|e, f| {
+        let length = |e: &[DVec2; 2]| e[0].distance_squared(e[1]);
+        length(f).total_cmp(&length(e))
+    });
+    if (b - a).perp_dot(c - a) == 0.0 {
+        edges.truncate(1);
+    }
+    edges
+}

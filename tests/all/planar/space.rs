@@ -1,0 +1,195 @@
+//! Faces in space: exact above a plane of viewers, conservative elsewhere.
+
+use glam::{DVec2, DVec3};
+use lodmark::{
+    bound::{
+        cell::ViewCell,
+        face::{conservative_interval, face_interval},
+        planar::{Aperture, Interval},
+    },
+    mesh::generate::Pcg32,
+};
+
+use super::seen::{between, cases, largest_of_two};
+
+fn angle(v: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = (a - v, b - v);
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+fn somewhere(random: &mut Pcg32, size: f64) -> DVec3 {
+    let mut x = || between(random, -size, size);
+    DVec3::new(x(), x(), x())
+}
+
+fn direction(random: &mut Pcg32) -> DVec3 {
+    loop {
+        let d = somewhere(random, 1.0);
+        if (0.1..1.0).contains(&d.length()) {
+            return d / d.length();
+        }
+    }
+}
+
+/// The largest angle that a sampled viewer on a plane sees between two points above it.
+fn seen(point: DVec3, normal: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let height = (a - point).dot(normal);
+    let foot = a - normal * height;
+    let [e, f] = [
+        normal.any_orthonormal_vector(),
+        normal.cross(normal.any_orthonormal_vector()),
+    ];
+    let from = |s: f64, t: f64| {
+        let along = |t: f64| ((t - 0.5) * std::f64::consts::PI * 0.99999).tan() * height;
+        foot + e * along(s) + f * along(t)
+    };
+    largest_of_two(|s, t| angle(from(s, t), a, b), [24, 24], 3).0
+}
+
+#[test]
+fn a_viewer_below_a_face_sees_more_than_its_interval_claims() {
+    let (count, mut random) = cases(300);
+    for number in 0..count {
+        let (point, normal) = (somewhere(&mut random, 3.0), direction(&mut random));
+        let corners = [(); 3].map(|()| {
+            let p = somewhere(&mut random, 5.0);
+            let height = (p - point).dot(normal);
+            p + normal * (between(&mut random, 0.5, 6.0) - height)
+        });
+        let d = direction(&mut random);
+        let theta = between(&mut random, 0.003, 0.8);
+        let aperture = Aperture::radians(theta).expect("below a right angle");
+        let cell = ViewCell::half_space(point, normal).expect("a unit normal");
+        let found = face_interval(&cell, &corners, d, aperture);
+        assert!(found.exact);
+        let mut inside = corners.to_vec();
+        for _ in 0..3 {
+            let (s, t) = (random.unit(), random.unit());
+            inside.push(
+                corners[0]
+                    + ((corners[1] - corners[0]) * s + (corners[2] - corners[0]) * (1.0 - s)) * t,
+            );
+        }
+        for (rho, sign) in [(found.offsets.max, 1.0), (found.offsets.min, -1.0)] {
+            let worst = |rho: f64| {
+                let seen = inside.iter().map(|&p| {
+                    let way = rho - p.dot(d);
+                    if way * sign <= 0.0 {
+                        0.0
+                    } else {
+                        seen(point, normal, p, p + d * way)
+                    }
+                });
+                seen.fold(0.0, f64::max)
+            };
+            let at = worst(rho);
+            assert!(at <= theta * (1.0 + 1e-6), "case {number}: {at} > {theta}");
+            let step = corners
+                .iter()
+                .map(|p| (rho - p.dot(d)).abs())
+                .fold(0.0, f64::max);
+            let beyond = worst(rho + sign * (step * 1e-3 + 1e-6));
+            assert!(
+                beyond > theta * (1.0 - 1e-6),
+                "case {number}: {beyond} <= {theta} beyond the claim"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_conservative_interval_holds_an_offset_that_someone_sees() {
+    let (count, mut random) = cases(301);
+    for number in 0..count {
+        let ends = [somewhere(&mut random, 3.0), somewhere(&mut random, 3.0)];
+        let away = direction(&mut random) * between(&mut random, 6.0, 20.0);
+        let corners = [(); 3].map(|()| away + somewhere(&mut random, 2.0));
+        let d = direction(&mut random);
+        let theta = between(&mut random, 0.003, 0.8);
+        let aperture = Aperture::radians(theta).expect("below a right angle");
+        let cell = ViewCell::segment(ends).expect("two points");
+        let found = face_interval(&cell, &corners, d, aperture);
+        assert!(!found.exact);
+        let distance = cell.distance_to_triangle(corners);
+        assert_eq!(
+            found.offsets,
+            conservative_interval(distance, &corners, d, aperture)
+        );
+        for rho in [found.offsets.min, found.offsets.max] {
+            if found.offsets.is_empty() {
+                continue;
+            }
+            let worst = largest_of_two(
+                |s, t| {
+                    let v = ends[0] + (ends[1] - ends[0]) * s;
+                    // Along two edges and across.
+                    let p = corners[0] + (corners[1] - corners[0]) * t;
+                    let q = corners[2] + (p - corners[2]) * s;
+                    let moved = |p: DVec3| p + d * (rho - p.dot(d));
+                    angle(v, p, moved(p)).max(angle(v, q, moved(q)))
+                },
+                [16, 16],
+                3,
+            );
+            assert!(
+                worst.0 <= theta * (1.0 + 1e-9),
+                "case {number}: {worst:?} > {theta}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_face_that_reaches_into_its_cell_may_move() {
+    let aperture = Aperture::degrees(1.0).expect("below 90");
+    let cell = ViewCell::half_space(DVec3::ZERO, DVec3::Z).expect("a normal");
+    let corners = [
+        DVec3::new(0.0, 0.0, -1.0),
+        DVec3::new(0.0, 0.0, 2.0),
+        DVec3::new(3.0, 0.0, 2.0),
+    ];
+    // Along y the face lies in its own plane only.
+    let own = face_interval(&cell, &corners, DVec3::Y, aperture).offsets;
+    assert_eq!(own, Interval { min: 0.0, max: 0.0 });
+    // Along x its part in the cell has more than one offset.
+    assert!(
+        face_interval(&cell, &corners, DVec3::X, aperture)
+            .offsets
+            .is_empty()
+    );
+    let plane = ViewCell::plane(DVec3::ZERO, DVec3::Z).expect("a normal");
+    let crossing = face_interval(&plane, &corners, DVec3::Y, aperture);
+    assert_eq!(crossing.offsets, Interval { min: 0.0, max: 0.0 });
+    assert!(crossing.exact);
+    // A box around a corner of the face leaves nothing but its plane.
+    let near = ViewCell::cuboid(DVec3::splat(-2.0), DVec3::splat(0.5)).expect("a box");
+    let touched = face_interval(&near, &corners, DVec3::Y, aperture);
+    assert_eq!(
+        (touched.offsets, touched.exact),
+        (Interval { min: 0.0, max: 0.0 }, false)
+    );
+}
+
+#[test]
+fn a_plane_of_viewers_is_seen_from_one_side_only() {
+    let aperture = Aperture::degrees(5.0).expect("below 90");
+    let plane = ViewCell::plane(DVec3::ZERO, DVec3::Z).expect("a normal");
+    let above = [
+        DVec3::new(0.0, 0.0, 2.0),
+        DVec3::new(1.0, 0.0, 3.0),
+        DVec3::new(0.0, 2.0, 4.0),
+    ];
+    let below = above.map(|p| DVec3::new(p.x, p.y, -p.z));
+    let d = DVec2::from_angle(0.7);
+    let (up, down) = (DVec3::new(d.x, 0.0, d.y), DVec3::new(d.x, 0.0, -d.y));
+    let space = ViewCell::half_space(DVec3::ZERO, DVec3::Z).expect("a normal");
+    let expected = face_interval(&space, &above, up, aperture).offsets;
+    assert_eq!(
+        face_interval(&plane, &above, up, aperture).offsets,
+        expected
+    );
+    assert_eq!(
+        face_interval(&plane, &below, down, aperture).offsets,
+        expected
+    );
+}
