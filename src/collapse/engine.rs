@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 
 use super::{
-    Changes, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule, Site,
+    Changes, Counters, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule,
+    Site,
     legality::RING_LIMIT,
     queue::{self, Front, Queue},
 };
@@ -35,41 +35,6 @@ pub enum End {
         /// One count per edge that is left.
         blocked: Refusals,
     },
-}
-
-/// What a run did. The same for every number of threads.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Counters {
-    /// Collapses committed.
-    pub collapses: u64,
-    /// Edges evaluated, those of rank measurements not counted.
-    pub evaluations: u64,
-    /// Costs of edges that were estimated from sums.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub estimates: u64,
-    /// Edges an eager queue would have evaluated for the same collapses.
-    pub evaluations_if_eager: u64,
-    /// How often each rule refused in an evaluation.
-    pub refusals: Refusals,
-    /// Where rank measurement is on: for every measured collapse, the share of legal edges that were truly cheaper,
-    /// in [0, 1).
-    pub ranks: Vec<f64>,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
-fn is_zero(count: &u64) -> bool {
-    *count == 0
-}
-
-impl Counters {
-    /// Adds what another run did, its ranks excepted.
-    pub(super) fn add(&mut self, other: &Self) {
-        self.collapses += other.collapses;
-        self.evaluations += other.evaluations;
-        self.estimates += other.estimates;
-        self.evaluations_if_eager += other.evaluations_if_eager;
-        self.refusals.add_all(&other.refusals);
-    }
 }
 
 /// Watches a run: history, charts, tests.

@@ -6,6 +6,7 @@
 //! [`Method`] where the new vertex lies and what it costs, and the [`Engine`] which edge is next.
 
 mod compact;
+mod counters;
 mod engine;
 mod flip;
 mod fold;
@@ -24,7 +25,8 @@ mod star;
 mod tiles;
 pub mod wedge;
 
-pub use engine::{Counters, End, Engine, Observer, Target};
+pub use counters::Counters;
+pub use engine::{End, Engine, Observer, Target};
 pub use flip::{flip, unmirrored};
 pub use fold::{ring_unfolded, unfolded};
 pub use heap::{Heap, Key};

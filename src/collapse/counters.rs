@@ -1,0 +1,40 @@
+//! What a run did, in numbers.
+
+use serde::Serialize;
+
+use super::Refusals;
+
+/// What a run did. The same for every number of threads.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Counters {
+    /// Collapses committed.
+    pub collapses: u64,
+    /// Edges evaluated, those of rank measurements not counted.
+    pub evaluations: u64,
+    /// Costs of edges that were estimated from sums.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub estimates: u64,
+    /// Edges an eager queue would have evaluated for the same collapses.
+    pub evaluations_if_eager: u64,
+    /// How often each rule refused in an evaluation.
+    pub refusals: Refusals,
+    /// Where rank measurement is on: for every measured collapse, the share of legal edges that were truly cheaper,
+    /// in [0, 1).
+    pub ranks: Vec<f64>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+impl Counters {
+    /// Adds what another run did, its ranks excepted.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.collapses += other.collapses;
+        self.evaluations += other.evaluations;
+        self.estimates += other.estimates;
+        self.evaluations_if_eager += other.evaluations_if_eager;
+        self.refusals.add_all(&other.refusals);
+    }
+}
