@@ -1,14 +1,17 @@
-//! A proof that no viewer of a cell sees a piece and what stands for it under too large an angle, by interval arithmetic.
+//! A proof that no viewer of a cell sees a piece and what stands for it under too large an angle.
 //!
-//! Over a piece and a box of viewpoints, displacement and line of sight lie in boxes; so do their cross product and the
-//! product of the two lines of sight. Where the largest cross product is small enough beside the least product, the angle
-//! is small enough for all points and viewpoints. Otherwise the larger of cell part and piece is halved, and the proof is
-//! given up after a number of steps.
+//! A point of the piece is a mean of its corners, a viewpoint one of the corners of the cell. So the cross product of
+//! displacement and line of sight is a mean of those of all corners with all corners, and no longer than the longest of
+//! them; the product of both lines of sight is at least the least of those. Where the one is small enough beside the other,
+//! the angle is small enough for all points and viewpoints. Otherwise the larger of cell part and piece is halved, and the
+//! proof is given up after a number of steps.
 
 use glam::DVec3;
 
 /// Steps for one piece.
-const STEPS: u32 = 400;
+const STEPS: u32 = 32;
+/// Corners of a part: cuts of all connections make more than the hull needs.
+const CORNERS: usize = 12;
 /// A part of a limit that is given away for rounding.
 const MARGIN: f64 = 1e-12;
 
@@ -31,25 +34,6 @@ impl Range {
         }
         range
     }
-
-    fn minus(self, other: Self) -> Self {
-        Self {
-            low: self.low - other.high,
-            high: self.high - other.low,
-        }
-    }
-
-    fn axis(&self, k: usize) -> [f64; 2] {
-        [self.low[k], self.high[k]]
-    }
-}
-
-fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-    [
-        all[0].min(all[1]).min(all[2]).min(all[3]),
-        all[0].max(all[1]).max(all[2]).max(all[3]),
-    ]
 }
 
 /// Twice: corners of a piece, and corners of what stands for it.
@@ -63,6 +47,9 @@ pub(super) fn proves(piece: &[[DVec3; 2]], cell: &[DVec3], limit2: f64) -> bool 
         let Some((piece, cell)) = open.pop() else {
             return true;
         };
+        if piece.len() > CORNERS || cell.len() > CORNERS {
+            return false;
+        }
         if holds(&piece, &cell, limit2) {
             continue;
         }
@@ -126,22 +113,17 @@ fn cut<T: Copy>(
 }
 
 fn holds(piece: &[[DVec3; 2]], cell: &[DVec3], limit2: f64) -> bool {
-    let viewer = Range::of(cell.iter().copied());
-    let sight = Range::of(piece.iter().map(|c| c[0])).minus(viewer);
-    let other = Range::of(piece.iter().map(|c| c[1])).minus(viewer);
-    let moved = Range::of(piece.iter().map(|c| c[1] - c[0]));
-    let mut across = 0.0;
-    for k in 0..3 {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let [a, b] = [
-            product(sight.axis(i), moved.axis(j)),
-            product(sight.axis(j), moved.axis(i)),
-        ];
-        let largest = (a[1] - b[0]).abs().max((a[0] - b[1]).abs());
-        across += largest * largest;
+    let (mut across, mut along) = (0.0_f64, f64::INFINITY);
+    for [p, _] in piece {
+        for &v in cell {
+            for [q, other] in piece {
+                let product = (*other - *q).cross(*p - v);
+                across = across.max(product.dot(product));
+                for &w in cell {
+                    along = along.min((*p - v).dot(*other - w));
+                }
+            }
+        }
     }
-    let along: f64 = (0..3)
-        .map(|k| product(sight.axis(k), other.axis(k))[0])
-        .sum();
     along > 0.0 && across <= limit2 * (1.0 - MARGIN) * (along * along)
 }
