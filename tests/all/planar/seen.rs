@@ -5,7 +5,7 @@ use lodmark::mesh::generate::Pcg32;
 
 /// How many cases of a kind, and the numbers they are drawn from: 10^3 and seed 2007 unless LODMARK_CASES and
 /// LODMARK_SEED say otherwise.
-pub fn cases(stream: u64) -> (u32, Pcg32) {
+pub(super) fn cases(stream: u64) -> (u32, Pcg32) {
     let number = |name: &str, default: u64| {
         std::env::var(name).map_or(default, |v| v.parse().expect("a whole number"))
     };
@@ -13,18 +13,18 @@ pub fn cases(stream: u64) -> (u32, Pcg32) {
     (count, Pcg32::new(number("LODMARK_SEED", 2007), stream))
 }
 
-pub fn between(random: &mut Pcg32, low: f64, high: f64) -> f64 {
+pub(super) fn between(random: &mut Pcg32, low: f64, high: f64) -> f64 {
     low + (high - low) * random.unit()
 }
 
 /// The angle between `a` and `b` seen from `v`.
-pub fn angle(v: DVec2, a: DVec2, b: DVec2) -> f64 {
+pub(super) fn angle(v: DVec2, a: DVec2, b: DVec2) -> f64 {
     let (a, b) = (a - v, b - v);
     (a.x * b.y - a.y * b.x).abs().atan2(a.x * b.x + a.y * b.y)
 }
 
 /// The largest value of `f` on [0, 1] that sampling finds, refined around the best sample, and where it is.
-pub fn largest(f: impl Fn(f64) -> f64, samples: u32) -> (f64, f64) {
+pub(super) fn largest(f: impl Fn(f64) -> f64, samples: u32) -> (f64, f64) {
     let mut best = (f64::NEG_INFINITY, 0.0);
     let (mut low, mut high, mut count) = (0.0, 1.0, samples);
     for _ in 0..14 {
@@ -44,7 +44,7 @@ pub fn largest(f: impl Fn(f64) -> f64, samples: u32) -> (f64, f64) {
 
 /// The largest value of `f` on the unit square that sampling finds, refined around the `starts` best local maxima of a
 /// grid of so many steps each way (0: that parameter changes nothing), and where it is.
-pub fn largest_of_two(
+pub(super) fn largest_of_two(
     f: impl Fn(f64, f64) -> f64,
     steps: [u32; 2],
     starts: usize,
