@@ -27,7 +27,9 @@ fn input() -> Input {
         cell: SegmentCell::between(DVec2::ZERO, DVec2::new(3.0, 0.5)).expect("finite ends"),
         aperture: Aperture::degrees(0.5).expect("below 90"),
         ends: points.iter().map(|&p| p + at(2.0)).collect(),
-        directions: (0..COUNT).map(|_| DVec2::from_angle(at(6.28).x)).collect(),
+        directions: (0..COUNT)
+            .map(|_| DVec2::from_angle(at(std::f64::consts::TAU).x))
+            .collect(),
         points,
     }
 }

@@ -59,7 +59,7 @@ impl SegmentCell {
     /// [`Error::Usage`] if a coordinate is not finite or the direction is zero.
     pub fn line(point: DVec2, direction: DVec2) -> Result<Self> {
         let along = Self::between(DVec2::ZERO, direction)?;
-        if !point.is_finite() || along.first == along.last {
+        if !point.is_finite() || along.last <= along.first {
             return Err(Error::Usage(format!(
                 "no line goes through {point} along {direction}: give a finite point and a direction other than zero"
             )));

@@ -123,8 +123,7 @@ impl Projection {
         let (from, to) = (face.from, face.to);
         if let [Some(v), Some(w)] = self.ends
             && v == w
-            && from.x == v.x
-            && to.x == v.x
+            && DVec2::new(from.x, to.x) == DVec2::splat(v.x)
         {
             let mut bounds = Bounds(Interval::ALL);
             bounds.narrow(from - v, from.y, 0.0, 1.0);

@@ -66,7 +66,7 @@ impl Options {
             ));
         }
         match self.limit {
-            Limit::Distance(d) if !(d >= 0.0 && d < f64::INFINITY) => refused(format!(
+            Limit::Distance(d) if !(0.0..f64::INFINITY).contains(&d) => refused(format!(
                 "a distance of {d}; expected a finite length that is not negative"
             )),
             _ => Ok(()),

@@ -335,7 +335,7 @@ impl Plan {
             }
             keyed.push((key, t as u32, segments));
         }
-        keyed.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)));
+        keyed.sort_by_key(|&(key, t, _)| (key, t));
         let mut last = None;
         for (key, t, segments) in keyed {
             let corners = mesh.corners(t as usize);

@@ -1,6 +1,8 @@
 //! No point of a face projected inside its interval is seen to move by more than the aperture, and beyond it one is.
 //! Every special case of the paper's appendices is built on purpose and counted.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
 use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
 use lodmark::mesh::generate::Pcg32;
@@ -82,18 +84,22 @@ fn draw(class: Class, random: &mut Pcg32) -> Case {
         1 => between(random, 0.03, 0.3),
         _ => between(random, 0.3, 1.4),
     };
-    let side = if random.bits() % 2 == 0 { 1.0 } else { -1.0 };
+    let side = if random.bits().is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    };
     let far = |random: &mut Pcg32| {
         let radius = between(random, 1.0, 10.0);
-        turned(DVec2::new(radius, 0.0), between(random, 0.0, 6.283))
+        turned(DVec2::new(radius, 0.0), between(random, 0.0, TAU))
     };
     let (mut a, mut b) = (far(random), far(random));
     let (mut from, mut to) = (DVec2::ZERO, DVec2::ZERO);
     let mut up = DVec2::Y;
-    if random.bits() % 2 == 0 {
+    if random.bits().is_multiple_of(2) {
         to = turned(
             DVec2::new(between(random, 0.2, 5.0), 0.0),
-            between(random, 0.0, 6.283),
+            between(random, 0.0, TAU),
         );
     }
     // A face along `w`, at m over the viewpoint.
@@ -105,7 +111,7 @@ fn draw(class: Class, random: &mut Pcg32) -> Case {
     let (sin, cos) = theta.sin_cos();
     match class {
         Class::Generic => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
         }
         Class::Parabola => [a, b] = along(random, DVec2::new(side * sin, cos), m),
         Class::Hyperbola => [a, b] = along(random, DVec2::new(cos, -side * sin), m),
@@ -121,7 +127,7 @@ fn draw(class: Class, random: &mut Pcg32) -> Case {
         Class::EdgeOnThroughViewpoint => (a.x, b.x) = (0.0, 0.0),
         Class::OneTangentInside | Class::OneTangentOutside => {
             // A cell on the x-axis; by the inscribed angle the circle of `up` touches it at the half-angle.
-            let gamma = between(random, 0.0, 6.283);
+            let gamma = between(random, 0.0, TAU);
             up = DVec2::from_angle(gamma);
             let c = ((theta + gamma) / 2.0).tan();
             let (low, high) = (between(random, 0.5, 3.0), between(random, 3.5, 9.0));
@@ -137,42 +143,42 @@ fn draw(class: Class, random: &mut Pcg32) -> Case {
             to = DVec2::new(shift + 2.0, 0.0);
         }
         Class::Crossing => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
             a = DVec2::new(between(random, 4.0, 8.0), between(random, 0.5, 4.0));
             b = DVec2::new(between(random, 4.0, 8.0), -between(random, 0.5, 4.0));
         }
         Class::Touching => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
             let contact = DVec2::new(between(random, 0.1, 2.9), 0.0);
             a = contact + DVec2::new(between(random, -3.0, 3.0), between(random, 0.5, 4.0));
             b = contact + (contact - a) * between(random, 0.1, 1.0);
         }
         Class::InLine => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
             a = DVec2::new(between(random, 3.5, 9.0), 0.0);
             b = DVec2::new(between(random, 3.5, 9.0), 0.0);
         }
         Class::Point => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
             b = a;
         }
         Class::AlongCell => {
-            let axis = turned(DVec2::X, between(random, 0.0, 6.283));
+            let axis = turned(DVec2::X, between(random, 0.0, TAU));
             (from, to) = (DVec2::ZERO, axis * 4.0);
             up = turned(-axis * side, between(random, -theta, theta));
         }
         Class::ViewpointOnEnd => {
-            up = turned(up, between(random, 0.0, 6.283));
+            up = turned(up, between(random, 0.0, TAU));
             a = DVec2::ZERO;
         }
     }
     // The same scene somewhere else; a quarter stay where the coordinates are exact.
     let (turn, by) = match random.bits() % 4 {
         0 => (0.0, DVec2::ZERO),
-        _ => (between(random, 0.0, 6.283), far(random) * 3.0),
+        _ => (between(random, 0.0, TAU), far(random) * 3.0),
     };
     let place = |p: DVec2| if turn == 0.0 { p } else { turned(p, turn) + by };
     Case {
@@ -380,7 +386,7 @@ fn a_line_cell_limits_a_face_elsewhere_than_at_its_ends() {
             )
         };
         let (a, b) = (at(), at());
-        let d = DVec2::from_angle(between(&mut random, 0.0, 6.283));
+        let d = DVec2::from_angle(between(&mut random, 0.0, TAU));
         let theta = between(&mut random, 0.001, 1.2);
         let aperture = Aperture::radians(theta).expect("below a right angle");
         let interval = Projection::new(&line, d, aperture).interval(a, b);
