@@ -53,10 +53,10 @@ pub(super) struct Options {
     )]
     error_deg: Option<f64>,
     /// The viewpoints of --error-deg: a JSON cell file
-    #[arg(long, value_name = "FILE", requires = "error_deg")]
+    #[arg(long, value_name = "FILE", requires = "error_deg", conflicts_with_all = ["error", "error_abs"])]
     cell: Option<PathBuf>,
     /// What stands for what: the file that simplify --bound-out wrote
-    #[arg(long, value_name = "FILE", requires = "error_deg")]
+    #[arg(long, value_name = "FILE", requires = "error_deg", conflicts_with_all = ["error", "error_abs"])]
     bound: Option<PathBuf>,
     /// Points on each mesh [default: 1000000]
     #[arg(long, value_name = "N", default_value_t = 1_000_000, hide_default_value = true, value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]

@@ -7,7 +7,7 @@ use lodmark::{
         cell::ViewCell,
         correspondence::{Allowance, Collapse, Correspondence, Face, Fan, Scratch},
     },
-    mesh::Mesh,
+    mesh::{Mesh, canonical},
     simplify::{Amount, Options, simplify, view_bounded::ViewBoundedOptions},
 };
 use proptest::prelude::*;
@@ -344,7 +344,8 @@ proptest! {
     fn after_many_collapses_the_map_still_covers_everything_once_without_a_tear(
         kind in 0_usize..8, seed: u64, share in 1_u64..9,
     ) {
-        let mesh = shapes::any(kind, seed);
+        // In canonical order no triangle repeats a vertex: such a one has no points to keep account of.
+        let mesh = canonical(&shapes::any(kind, seed)).mesh;
         let (map, low) = run(&mesh, (mesh.triangles().len() as u64 * share / 10).max(1));
         prop_assert_eq!(map.face_count(), low.triangles().len());
         prop_assert_eq!(map.triangle_count(), mesh.triangles().len());

@@ -9,6 +9,7 @@ use lodmark::{
     },
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
     metric::closest_point,
+    num::math,
     raster::{BucketEngine, LayerEngine, Scene, Unrender},
     simplify::{
         Amount, MethodOptions, Options, Outcome,
@@ -569,7 +570,7 @@ fn turned_over(original: &Mesh, mesh: &Mesh) -> usize {
         let centroid = (face[0] + face[1] + face[2]) / 3.0;
         let squared = |f: &[DVec3; 3]| closest_point(centroid, *f).1;
         let nearest = original.iter().map(squared).fold(f64::INFINITY, f64::min);
-        let reach = (nearest.sqrt() * 1.000_001).max(0.01 * (high - low).length());
+        let reach = (math::sqrt(nearest) * 1.000_001).max(0.01 * (high - low).length());
         let near = original.iter().filter(|f| squared(f) <= reach * reach);
         near.map(|f| normal(*f).dot(normal(face)))
             .all(|dot| dot <= 0.0)

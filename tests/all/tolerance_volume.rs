@@ -27,8 +27,8 @@ pub(crate) fn ring(random: &mut Random, bump: f64) -> ([DVec3; 2], Vec<OldFace>)
         let radius = 1.0 + 0.4 * random.unit();
         let height = (random.unit() - 0.5) * bump;
         link.push(DVec3::new(
-            1.4 * radius * angle.cos(),
-            radius * angle.sin(),
+            1.4 * radius * libm::cos(angle),
+            radius * libm::sin(angle),
             height,
         ));
     }

@@ -113,7 +113,7 @@ impl Fan {
             let mut ends = face.corners.iter().filter(|v| is_end(v));
             match (ends.next(), ends.next()) {
                 (Some(_), None) => {
-                    let apex = face.corners.iter().position(|v| is_end(v))?;
+                    let apex = face.corners.iter().position(is_end)?;
                     sectors.push(Sector { face, apex });
                 }
                 _ => beside += 1,

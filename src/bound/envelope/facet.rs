@@ -94,8 +94,10 @@ impl Facet {
         let ap = p - self.corner;
         let (along_b, along_c) = (ap.dot(ab), ap.dot(ac));
         if self.scale == 0.0 {
-            let nearer = self.to_ab(ap, along_b).min(self.to_ac(ap, along_c));
-            return nearer.min(self.to_bc(ap));
+            let nearer = self
+                .squared_to_ab(ap, along_b)
+                .min(self.squared_to_ac(ap, along_c));
+            return nearer.min(self.squared_to_bc(ap));
         }
         let v = (cc * along_b - bc * along_c) * self.scale;
         let w = (bb * along_c - bc * along_b) * self.scale;
@@ -107,29 +109,29 @@ impl Facet {
         // The nearest point lies on an edge that the point is outside of.
         let mut best = f64::INFINITY;
         if w < 0.0 {
-            best = self.to_ab(ap, along_b);
+            best = self.squared_to_ab(ap, along_b);
         }
         if v < 0.0 {
-            best = best.min(self.to_ac(ap, along_c));
+            best = best.min(self.squared_to_ac(ap, along_c));
         }
         if u < 0.0 {
-            best = best.min(self.to_bc(ap));
+            best = best.min(self.squared_to_bc(ap));
         }
         best
     }
 
     #[inline]
-    fn to_ab(&self, ap: DVec3, along: f64) -> f64 {
+    fn squared_to_ab(&self, ap: DVec3, along: f64) -> f64 {
         to_segment(ap, self.sides[0], along, self.gram[0])
     }
 
     #[inline]
-    fn to_ac(&self, ap: DVec3, along: f64) -> f64 {
+    fn squared_to_ac(&self, ap: DVec3, along: f64) -> f64 {
         to_segment(ap, self.sides[1], along, self.gram[2])
     }
 
     #[inline]
-    fn to_bc(&self, ap: DVec3) -> f64 {
+    fn squared_to_bc(&self, ap: DVec3) -> f64 {
         let [ab, ac] = self.sides;
         let (bp, bc) = (ap - ab, ac - ab);
         to_segment(bp, bc, bp.dot(bc), bc.dot(bc))

@@ -42,11 +42,9 @@ impl Facet {
     /// The point nearest to `p`.
     pub(super) fn nearest_point(&self, p: DVec3) -> DVec3 {
         let [a, b, c] = self.corners;
-        if self.norm > 0.0 {
-            if self.contains(p) {
-                let n = self.normal;
-                return p - n * ((p - a).dot(n) / self.norm);
-            }
+        if self.norm > 0.0 && self.contains(p) {
+            let n = self.normal;
+            return p - n * ((p - a).dot(n) / self.norm);
         }
         let mut best = a;
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -101,11 +99,9 @@ impl Facet {
     #[inline]
     pub(super) fn squared(&self, p: DVec3) -> f64 {
         let [a, b, c] = self.corners;
-        if self.norm > 0.0 {
-            if self.contains(p) {
-                let height = (p - a).dot(self.normal);
-                return height * height / self.norm;
-            }
+        if self.norm > 0.0 && self.contains(p) {
+            let height = (p - a).dot(self.normal);
+            return height * height / self.norm;
         }
         to_side(p, a, b).min(to_side(p, b, c)).min(to_side(p, c, a))
     }

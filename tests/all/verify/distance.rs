@@ -130,7 +130,7 @@ fn needles_points_and_segments_are_surfaces_too() {
         panic!("{report:?}");
     };
     assert!((to_needle.farthest.distance - 3.0).abs() < 1e-9);
-    assert!((to_point.farthest.distance - 13.0_f64.sqrt()).abs() < 1e-9);
+    assert!((to_point.farthest.distance - libm::sqrt(13.0)).abs() < 1e-9);
     assert!(!check(&needle, &point, Claim::Absolute(3.5)).holds);
 }
 
