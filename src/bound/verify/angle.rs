@@ -19,6 +19,7 @@ use super::{
     nearest::Facets,
     record::{ONE, Record},
     sight::{Viewpoints, angle, tangent2},
+    sighting::{Found, Seen, worst_first},
     spread::{Spot, Spread},
 };
 use crate::{
@@ -37,8 +38,6 @@ const TRIANGLES: u32 = 64;
 const GROUP: usize = 256;
 /// Beyond rounding: of the tangent, and in radians.
 const SLACK: [f64; 2] = [1e-8, 1e-10];
-/// Pieces from which the worst angle is searched for.
-const SEARCHES: usize = 64;
 /// Viewpoints for each sample, beside the corners of the cell.
 const VIEWPOINTS: u64 = 2;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -175,44 +174,6 @@ pub fn angles(
     })
 }
 
-/// A sighting in frame units.
-#[derive(Clone, Copy)]
-struct Seen {
-    tangent2: f64,
-    triangle: u32,
-    piece: u32,
-    point: DVec3,
-    replacement: DVec3,
-    viewpoint: DVec3,
-}
-
-#[derive(Default)]
-struct Found {
-    worst: Option<Seen>,
-    sightings: u64,
-    violations: u64,
-}
-
-impl Found {
-    fn see(&mut self, seen: Seen, limit2: f64) {
-        self.sightings += 1;
-        self.violations += u64::from(seen.tangent2 > limit2);
-        if self.worst.is_none_or(|w| seen.tangent2 > w.tangent2) {
-            self.worst = Some(seen);
-        }
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.sightings += other.sightings;
-        self.violations += other.violations;
-        if let Some(seen) = other.worst
-            && self.worst.is_none_or(|w| seen.tangent2 > w.tangent2)
-        {
-            self.worst = Some(seen);
-        }
-    }
-}
-
 struct Check<'a> {
     originals: Vec<[DVec3; 3]>,
     targets: Vec<[DVec3; 3]>,
@@ -254,28 +215,37 @@ impl Check<'_> {
             let group: Vec<_> = (start..tasks.min(start + GROUP as u32))
                 .into_par_iter()
                 .map(|i| {
-                    let mut own = Found::default();
-                    let (mut first, mut open) = (None, 0.0);
+                    let mut all = Found::default();
+                    let (mut first, mut open, mut worst) = (None, 0.0, Vec::new());
                     for t in i * TRIANGLES..count.min((i + 1) * TRIANGLES) {
+                        let mut own = Found::default();
                         let (wrong, area) = self.pieces_of(record, t, &mut own);
                         first = first.or(wrong.map(|wrong| (t, wrong)));
                         open += area;
+                        all.add(&own);
+                        worst.extend(own.worst);
                     }
-                    (own, first, open)
+                    worst_first(&mut worst);
+                    (all, worst, first, open)
                 })
                 .collect();
-            for (own, first, open) in group {
-                found.add(&own);
-                worst.extend(own.worst);
+            for (all, seen, first, open) in group {
+                found.add(&all);
+                worst.extend(seen);
                 gap = gap.or(first);
                 undecided += open;
             }
+            worst_first(&mut worst);
         }
-        worst.sort_by(|a, b| b.tangent2.total_cmp(&a.tangent2));
-        worst.truncate(SEARCHES);
         let searched: Vec<Found> = worst
             .par_iter()
-            .map(|seen| self.search(record, *seen))
+            .flat_map_iter(|&seen| {
+                let corners = &self.viewpoints.corners;
+                let sum = corners.iter().fold(DVec3::ZERO, |sum, &v| sum + v);
+                let middle = sum / corners.len() as f64;
+                [seen.viewpoint, middle].map(|viewpoint| Seen { viewpoint, ..seen })
+            })
+            .map(|start| self.search(record, start))
             .collect();
         for own in &searched {
             found.add(own);
@@ -315,54 +285,58 @@ impl Check<'_> {
         (cover::check(record, triangle), undecided)
     }
 
-    /// Looks for a larger angle near a sighting: points and viewpoints move towards corners by smaller and smaller steps.
+    /// Looks for a larger angle from a sighting on: points and viewpoints move towards corners by smaller and smaller steps.
     fn search(&self, record: &Record, start: Seen) -> Found {
         let (mut found, mut corners) = (Found::default(), Vec::new());
         self.load(record, start.triangle, start.piece, &mut corners);
-        let mut best = start;
         for fan in 2..corners.len() {
             let three = [corners[0], corners[fan - 1], corners[fan]];
             let middle = [0, 1].map(|k| (three[0][k] + three[1][k] + three[2][k]) / 3.0);
-            let mut here = Seen {
-                point: middle[0],
-                replacement: middle[1],
-                tangent2: tangent2(middle[0], middle[1], start.viewpoint),
-                ..start
-            };
-            let mut step = 0.5;
-            for _ in 0..48 {
-                let before = here.tangent2;
-                let mut attempt = |point, replacement, viewpoint, here: &mut Seen| {
-                    let seen = Seen {
-                        tangent2: tangent2(point, replacement, viewpoint),
-                        point,
-                        replacement,
-                        viewpoint,
-                        ..*here
-                    };
-                    found.see(seen, self.limit2);
-                    if seen.tangent2 > here.tangent2 {
-                        *here = seen;
-                    }
+            // Where the angle is largest for one viewpoint need not be where it is for the best one.
+            for [point, replacement] in [[middle[0], middle[1]], three[0], three[1], three[2]] {
+                let from = Seen {
+                    tangent2: tangent2(point, replacement, start.viewpoint),
+                    point,
+                    replacement,
+                    ..start
                 };
-                for [p, s] in three {
-                    let (point, replacement) =
-                        (here.point.lerp(p, step), here.replacement.lerp(s, step));
-                    attempt(point, replacement, here.viewpoint, &mut here);
-                }
-                for &v in &self.viewpoints.corners {
-                    let viewpoint = here.viewpoint.lerp(v, step);
-                    attempt(here.point, here.replacement, viewpoint, &mut here);
-                }
-                if here.tangent2 <= before {
-                    step *= 0.6;
-                }
-            }
-            if here.tangent2 > best.tangent2 {
-                best = here;
+                self.climb(three, from, &mut found);
             }
         }
         found
+    }
+
+    /// Moves point and viewpoint towards corners while that makes the angle larger, by smaller and smaller steps.
+    fn climb(&self, three: [[DVec3; 2]; 3], mut here: Seen, found: &mut Found) {
+        let mut step = 0.5;
+        for _ in 0..48 {
+            let before = here.tangent2;
+            let mut attempt = |point, replacement, viewpoint, here: &mut Seen| {
+                let seen = Seen {
+                    tangent2: tangent2(point, replacement, viewpoint),
+                    point,
+                    replacement,
+                    viewpoint,
+                    ..*here
+                };
+                found.see(seen, self.limit2);
+                if seen.tangent2 > here.tangent2 {
+                    *here = seen;
+                }
+            };
+            for [p, s] in three {
+                let (point, replacement) =
+                    (here.point.lerp(p, step), here.replacement.lerp(s, step));
+                attempt(point, replacement, here.viewpoint, &mut here);
+            }
+            for &v in &self.viewpoints.corners {
+                let viewpoint = here.viewpoint.lerp(v, step);
+                attempt(here.point, here.replacement, viewpoint, &mut here);
+            }
+            if here.tangent2 <= before {
+                step *= 0.6;
+            }
+        }
     }
 
     fn sample(&self, samples: u64, found: &mut Found, progress: &dyn Progress) -> Result<()> {

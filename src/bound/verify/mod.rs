@@ -13,6 +13,7 @@ mod nearest;
 mod proof;
 mod record;
 mod sight;
+mod sighting;
 mod spread;
 
 pub use angle::{AngleReport, Property, Sighting, angles};

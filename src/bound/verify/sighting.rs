@@ -1,0 +1,50 @@
+//! What viewers saw of pieces and what stands for them: how much in all, and the worst.
+
+use glam::DVec3;
+
+/// Pieces from which the worst angle is searched for.
+const SEARCHES: usize = 64;
+
+/// A sighting in frame units.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) tangent2: f64,
+    pub(super) triangle: u32,
+    pub(super) piece: u32,
+    pub(super) point: DVec3,
+    pub(super) replacement: DVec3,
+    pub(super) viewpoint: DVec3,
+}
+
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) worst: Option<Seen>,
+    pub(super) sightings: u64,
+    pub(super) violations: u64,
+}
+
+impl Found {
+    pub(super) fn see(&mut self, seen: Seen, limit2: f64) {
+        self.sightings += 1;
+        self.violations += u64::from(seen.tangent2 > limit2);
+        if self.worst.is_none_or(|w| seen.tangent2 > w.tangent2) {
+            self.worst = Some(seen);
+        }
+    }
+
+    pub(super) fn add(&mut self, other: &Self) {
+        self.sightings += other.sightings;
+        self.violations += other.violations;
+        if let Some(seen) = other.worst
+            && self.worst.is_none_or(|w| seen.tangent2 > w.tangent2)
+        {
+            self.worst = Some(seen);
+        }
+    }
+}
+
+/// The sightings that are searched from, the worst first; those of equal angles in their order.
+pub(super) fn worst_first(seen: &mut Vec<Seen>) {
+    seen.sort_by(|a, b| b.tangent2.total_cmp(&a.tangent2));
+    seen.truncate(SEARCHES);
+}
