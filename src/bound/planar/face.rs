@@ -18,6 +18,10 @@ use super::{
 };
 use crate::num::math;
 
+/// A viewpoint this close to a face is on it, as a fraction of the coordinates: where rounding decides on which side it
+/// is, it would also decide whether the limit beside it is found.
+const CONTACT: f64 = 1e-14;
+
 /// Offsets `rho` of the valid lines `x . d = rho`; none where `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -171,10 +175,12 @@ impl Projection {
             if (from.x < 0.0) != (to.x < 0.0) {
                 // Straight behind the direction, a point may go as far as the viewer and no farther.
                 let ahead = moment * inverse;
-                if ahead <= 0.0 {
+                let size = |p: DVec2| p.x.abs() + p.y.abs();
+                let near = CONTACT * (size(face.from) + size(face.to) + size(end));
+                if ahead <= near {
                     bounds.0.max = bounds.0.max.min(end.y);
                 }
-                if ahead >= 0.0 {
+                if ahead >= -near {
                     bounds.0.min = bounds.0.min.max(end.y);
                 }
             }

@@ -66,6 +66,7 @@ const CLASSES: [Class; 16] = [
     Class::ViewpointOnEnd,
 ];
 
+#[derive(Debug)]
 struct Case {
     /// Ends of the cell; equal for one viewpoint.
     cell: [DVec2; 2],
@@ -251,12 +252,7 @@ impl Case {
     /// Panics where sampling contradicts the claim that `rho` is the last valid offset in the sense of `sign`; gives the
     /// parameter of the face point that limits it.
     fn judge(&self, class: Class, number: u32, rho: f64, sign: f64) -> f64 {
-        let what = || {
-            format!(
-                "{class:?} {number}: rho {rho} toward {sign}, theta {}",
-                self.theta
-            )
-        };
+        let what = || format!("{class:?} {number}: rho {rho} toward {sign}, {self:?}");
         // Where a side of the cone is parallel to the direction but for rounding, the limit is as far.
         if rho.abs() > 1e9 * SCALE {
             assert!(rho * sign > 0.0, "{}", what());
@@ -278,13 +274,14 @@ impl Case {
             "{}: {seen}",
             what()
         );
-        let extent = (rho - self.point(t).dot(self.direction)).abs();
         // Near a contact the angle jumps: only viewers and points within about the step of it see anything.
         let floor = if self.gap() < 0.2 { 1e-2 } else { 1e-8 };
-        let step = 1e-4 * extent + floor * SCALE;
-        let found = [1, 2, 8]
-            .into_iter()
-            .any(|finer| self.seen(rho + sign * step, sign, finer).0 > self.theta);
+        let found = [1, 2, 8, 40].into_iter().any(|finer| {
+            let (_, [_, t]) = self.seen(inside, sign, finer);
+            let extent = (rho - self.point(t).dot(self.direction)).abs();
+            let step = 1e-4 * extent + floor * SCALE;
+            self.seen(rho + sign * step, sign, finer).0 > self.theta
+        });
         assert!(found, "{}: nobody sees too much beyond the claim", what());
         t
     }
@@ -414,4 +411,24 @@ fn a_line_cell_limits_a_face_elsewhere_than_at_its_ends() {
             "case {number}: {interval:?} and not {expected:?}"
         );
     }
+}
+
+#[test]
+fn a_viewpoint_a_rounding_error_beside_a_face_lets_it_go() {
+    // Case 93379 of 10^5 faces through a viewpoint along the side of its cone.
+    let case = Case {
+        cell: [
+            DVec2::new(-19.704_283_887_876_15, -1.189_390_026_670_972_5),
+            DVec2::new(-20.905_475_581_530_172, -2.793_957_439_535_063),
+        ],
+        face: [
+            DVec2::new(-19.431_069_141_748_946, -4.687_402_356_827_183),
+            DVec2::new(-19.859_274_439_878_135, 0.794_978_934_542_536_2),
+        ],
+        direction: DVec2::new(0.959_549_201_314_995_4, 0.281_540_992_141_027_85),
+        theta: 1.363_344_104_331_917_9,
+    };
+    let through = case.cell[0].dot(case.direction);
+    let interval = case.interval();
+    assert!(interval.max <= through + 1e-12, "{interval:?}, {through}");
 }
