@@ -34,7 +34,7 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
         .map_err(failed)?;
     // Some systems refuse to rename an open file.
     drop(file);
-    fs::rename(&temporary.0, &target).map_err(failed)
+    temporary.rename(&target).map_err(failed)
 }
 
 /// Whether [`write()`] can begin: ask before long work. Nothing is left behind.
@@ -76,8 +76,8 @@ fn fill(file: &mut File, content: impl FnOnce(&mut dyn Write) -> io::Result<()>)
     buffered.flush()
 }
 
-/// A file that is removed on every way out; after the renaming there is nothing left to remove.
-struct Temporary(PathBuf);
+/// A file that is removed on every way out but that of its renaming.
+struct Temporary(Option<PathBuf>);
 
 impl Temporary {
     /// Creates one in the folder of `target`, under a name nobody uses.
@@ -92,7 +92,7 @@ impl Temporary {
         for attempt in 0..1000 {
             let name = folder.join(format!(".lodmark-{}-{attempt}.tmp", std::process::id()));
             match OpenOptions::new().write(true).create_new(true).open(&name) {
-                Ok(file) => return Ok((file, Self(name))),
+                Ok(file) => return Ok((file, Self(Some(name)))),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -101,10 +101,21 @@ impl Temporary {
             "the folder holds 1000 abandoned temporary files .lodmark-*.tmp; remove them",
         ))
     }
+
+    /// Gives the file its name. From then on the old name may be that of another thread's file: it is not removed.
+    fn rename(mut self, target: &Path) -> io::Result<()> {
+        if let Some(name) = &self.0 {
+            fs::rename(name, target)?;
+        }
+        self.0 = None;
+        Ok(())
+    }
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
+        if let Some(name) = &self.0 {
+            let _ = fs::remove_file(name);
+        }
     }
 }

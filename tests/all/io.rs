@@ -141,6 +141,28 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
 }
 
 #[test]
+fn threads_that_write_into_one_folder_lose_no_file() {
+    let folder = folder();
+    let path = |name: u32| folder.path().join(format!("{name}"));
+    std::thread::scope(|scope| {
+        for thread in 0..4 {
+            let path = &path;
+            scope.spawn(move || {
+                for i in 0..250 {
+                    let name = thread * 250 + i;
+                    io::atomic::write(&path(name), |w| write!(w, "{name}")).expect("written");
+                }
+            });
+        }
+    });
+    assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 1000);
+    for name in 0..1000 {
+        let found = fs::read_to_string(path(name)).expect("there");
+        assert_eq!(found, name.to_string());
+    }
+}
+
+#[test]
 fn a_missing_folder_and_a_folder_in_place_of_the_file_are_io_errors() {
     let folder = folder();
     fs::create_dir(folder.path().join("b.ply")).expect("writable");
