@@ -83,6 +83,9 @@ pub(super) struct Options {
     /// Measure the true rank of every K-th collapse among all legal ones; slow, changes no result
     #[arg(long, value_name = "K", default_value_t = 0)]
     measure_rank: u64,
+    /// Leave folds and flipped faces as the collapses made them; then every level of the history is a direct run's
+    #[arg(long)]
+    keep_folds: bool,
     /// Whether holes may close and parts may merge
     #[arg(long, value_enum, default_value_t = TopologyName::Preserve)]
     topology: TopologyName,
@@ -258,6 +261,7 @@ impl Options {
         options.method = method;
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
+        options.unfold &= !self.keep_folds;
         options.schedule = match (self.evaluation, self.method) {
             (Some(Evaluation::Lazy), _) => Schedule::Lazy,
             (Some(Evaluation::Semi), _) => Schedule::Semi,
@@ -322,21 +326,24 @@ impl Options {
             ("--engine", self.engine.is_some()),
         ];
         let quadric = [("--probabilistic", self.probabilistic)];
+        let ordering = [("--keep-folds", self.keep_folds)];
         let guidance = self.guidance.given();
         let bound = self.view_bound.given();
         let distance = self.within.given();
         let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => &[quadric.as_slice(), &guidance, &bound, &distance].concat(),
+            MethodOptions::Image(_) => {
+                &[quadric.as_slice(), &ordering, &guidance, &bound, &distance].concat()
+            }
             MethodOptions::Memoryless(_) => {
                 &[image.as_slice(), &quadric, &guidance, &bound, &distance].concat()
             }
             MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &bound, &distance].concat(),
             MethodOptions::Visibility(_) => &[image.as_slice(), &bound, &distance].concat(),
             MethodOptions::Tolerance(_) => {
-                &[image.as_slice(), &quadric, &guidance, &bound].concat()
+                &[image.as_slice(), &quadric, &ordering, &guidance, &bound].concat()
             }
             MethodOptions::ViewBounded(_) => {
-                &[image.as_slice(), &quadric, &guidance, &distance].concat()
+                &[image.as_slice(), &quadric, &ordering, &guidance, &distance].concat()
             }
         };
         if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {

@@ -19,26 +19,56 @@ pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refu
     if rules.fold_cosine <= -1.0 {
         return Ok(());
     }
-    let changed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
-    let facets = |faces: &[PatchFace], after: bool| {
-        let facet = |f: &PatchFace| Facet {
-            corners: f.corners,
-            normal: normal(if after {
-                patch.after(live, f)
-            } else {
-                patch.before(live, f)
-            }),
-        };
-        faces.iter().map(facet).collect::<Vec<_>>()
-    };
-    let after = sharpest(live, &facets(&patch.added, true), changed);
-    if after >= rules.fold_cosine
-        || after >= sharpest(live, &facets(&patch.removed, false), changed)
-    {
+    let sharpest =
+        |faces, after| sharpest(live, &facets(live, patch, faces, after), changed(patch));
+    let after = sharpest(&patch.added, true);
+    if after >= rules.fold_cosine || after >= sharpest(&patch.removed, false) {
         Ok(())
     } else {
         Err(Refusal::Fold)
     }
+}
+
+/// How far the edges that a patch, not yet committed, makes or changes are beyond a cosine, summed, before and after.
+///
+/// O(faces * (faces + valence)).
+#[must_use]
+pub fn foldedness(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
+    let sum = |faces, after| {
+        let mut sum = 0.0;
+        let add = |c: f64| sum += (cosine - c).max(0.0);
+        each_angle(
+            live,
+            &facets(live, patch, faces, after),
+            changed(patch),
+            add,
+        );
+        sum
+    };
+    [sum(&patch.removed, false), sum(&patch.added, true)]
+}
+
+/// The edges between two faces whose normals have a cosine below the given one, by ids; O(edges).
+#[must_use]
+pub fn folded_edges(live: &LiveMesh, cosine: f64) -> Vec<u32> {
+    let is_folded = |&edge: &u32| {
+        let Some(side) = live.edge(edge) else {
+            return false;
+        };
+        if live.faces_at_edge(edge) != 2 {
+            return false;
+        }
+        let mut faces = live.triangles_at(side[0]).filter_map(|id| {
+            let corners = live.triangle(id)?;
+            let forward = along(corners, side)?;
+            Some((normal(corners.map(|v| live.position(v))), forward))
+        });
+        let (Some((a, first)), Some((b, second))) = (faces.next(), faces.next()) else {
+            return false;
+        };
+        self::cosine(a, b, first == second) < cosine
+    };
+    (0..live.edge_ids()).filter(is_folded).collect()
 }
 
 /// [`unfolded`] of the collapse of a ring's edge to `position`.
@@ -98,11 +128,39 @@ struct Facet {
     normal: DVec3,
 }
 
-/// The smallest cosine between the normals of two neighbours of which one is in `facets`; 1 where there are none. The
-/// others are the faces of `live` that are not `changed`. Faces without area and edges with more than two faces have
-/// no angle.
+/// Whether a face is one that a patch removes.
+fn changed(patch: &Patch) -> impl Fn(u32) -> bool {
+    |id| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok()
+}
+
+/// The faces of a patch, before it or after.
+fn facets(live: &LiveMesh, patch: &Patch, faces: &[PatchFace], after: bool) -> Vec<Facet> {
+    let facet = |f: &PatchFace| Facet {
+        corners: f.corners,
+        normal: normal(if after {
+            patch.after(live, f)
+        } else {
+            patch.before(live, f)
+        }),
+    };
+    faces.iter().map(facet).collect()
+}
+
+/// The smallest cosine between the normals of two neighbours of which one is in `facets`; 1 where there are none.
 fn sharpest(live: &LiveMesh, facets: &[Facet], changed: impl Fn(u32) -> bool) -> f64 {
     let mut least = 1.0_f64;
+    each_angle(live, facets, changed, |cosine| least = least.min(cosine));
+    least
+}
+
+/// Calls back with the cosine between the normals of every two neighbours of which one is in `facets`. The others are
+/// the faces of `live` that are not `changed`. Faces without area and edges with more than two faces have no angle.
+fn each_angle(
+    live: &LiveMesh,
+    facets: &[Facet],
+    changed: impl Fn(u32) -> bool,
+    mut found: impl FnMut(f64),
+) {
     for (i, facet) in facets.iter().enumerate() {
         for k in 0..3 {
             let side = [facet.corners[k], facet.corners[(k + 1) % 3]];
@@ -111,7 +169,7 @@ fn sharpest(live: &LiveMesh, facets: &[Facet], changed: impl Fn(u32) -> bool) ->
             if let Some((j, forward, other)) = beside.next() {
                 // Every pair once.
                 if j > i && beside.next().is_none() {
-                    least = least.min(cosine(facet.normal, other.normal, forward));
+                    found(cosine(facet.normal, other.normal, forward));
                 }
                 continue;
             }
@@ -122,11 +180,10 @@ fn sharpest(live: &LiveMesh, facets: &[Facet], changed: impl Fn(u32) -> bool) ->
             });
             if let (Some((corners, forward)), None) = (outside.next(), outside.next()) {
                 let other = normal(corners.map(|v| live.position(v)));
-                least = least.min(cosine(facet.normal, other, forward));
+                found(cosine(facet.normal, other, forward));
             }
         }
     }
-    least
 }
 
 /// Whether a face runs along a side in its direction; `None` where the side is not its own.

@@ -25,6 +25,9 @@ pub const FOLD_COSINE: f64 = -0.9;
 /// How near the reference's surface counts, as a fraction of its diagonal.
 pub const REACH: f64 = 0.01;
 
+/// Cells along a side of the grid of [`Sides::within`].
+const GRID: f64 = 64.0;
+
 /// Folds and flipped faces of a mesh that its reference does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Folds {
@@ -77,6 +80,42 @@ impl Sides {
         let (low, high) = reference.bounds()?;
         Some(Self {
             surface: Proximity::new(corners(reference).collect())?,
+            reach: REACH * length(high - low),
+        })
+    }
+
+    /// As [`Sides::new`], but only those faces of `reference` that may touch one of the boxes; O(n) for few boxes.
+    #[must_use]
+    pub fn within(reference: &Mesh, boxes: &[[DVec3; 2]]) -> Option<Self> {
+        let (low, high) = reference.bounds()?;
+        let extent = (high - low).max_element();
+        // A grid that says where boxes are: most faces are in none of its cells.
+        let cell = |p: DVec3| {
+            let at = (p - low) * (GRID / extent);
+            at.to_array()
+                .map(|x| (x.max(0.0) as usize).min(GRID as usize - 1))
+        };
+        let side = GRID as usize;
+        let mut near = vec![false; side * side * side];
+        let index = |[x, y, z]: [usize; 3]| (z * side + y) * side + x;
+        for &[from, to] in boxes {
+            let (a, b) = (cell(from), cell(to));
+            for z in a[2]..=b[2] {
+                for y in a[1]..=b[1] {
+                    near[index([a[0], y, z])..=index([b[0], y, z])].fill(true);
+                }
+            }
+        }
+        let touches = |face: &[DVec3; 3]| {
+            let a = cell(face[0].min(face[1]).min(face[2]));
+            let b = cell(face[0].max(face[1]).max(face[2]));
+            (a[2]..=b[2]).any(|z| {
+                (a[1]..=b[1])
+                    .any(|y| near[index([a[0], y, z])..=index([b[0], y, z])].contains(&true))
+            })
+        };
+        Some(Self {
+            surface: Proximity::new(corners(reference).filter(touches).collect())?,
             reach: REACH * length(high - low),
         })
     }

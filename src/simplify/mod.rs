@@ -14,6 +14,7 @@ pub mod quadric;
 mod replacement;
 mod run;
 pub mod tolerance;
+mod unfold;
 pub mod view_bounded;
 pub mod visibility;
 

@@ -12,12 +12,10 @@ use sha2::{Digest, Sha256};
 use crate::shapes;
 
 fn run(mesh: &Mesh, triangles: u64) -> Outcome {
-    simplify(
-        mesh,
-        &Options::memoryless(Amount::Triangles(triangles)),
-        &Silent,
-    )
-    .expect("valid")
+    let mut options = Options::memoryless(Amount::Triangles(triangles));
+    // What is repaired after the last collapse belongs to the level where the run ended.
+    options.unfold = false;
+    simplify(mesh, &options, &Silent).expect("valid")
 }
 
 fn read(bytes: &[u8]) -> Result<History, Error> {
@@ -117,9 +115,10 @@ fn a_newer_format_is_unsupported_rather_than_damaged() {
 
 #[test]
 fn the_header_says_what_made_it() {
-    let outcome = run(&shapes::torus(8, 6, 1), 40);
+    let wanted = Options::memoryless(Amount::Triangles(40));
+    let outcome = simplify(&shapes::torus(8, 6, 1), &wanted, &Silent).expect("valid");
     let header = outcome.history.header();
     assert_eq!(header.version, env!("CARGO_PKG_VERSION"));
     let options: Options = serde_json::from_str(&header.options).expect("JSON");
-    assert_eq!(options, Options::memoryless(Amount::Triangles(40)));
+    assert_eq!(options, wanted);
 }

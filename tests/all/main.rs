@@ -41,6 +41,7 @@ mod streams;
 mod tiles;
 mod tolerance;
 mod tolerance_volume;
+mod unfold;
 mod unrender;
 mod verify;
 mod view;
