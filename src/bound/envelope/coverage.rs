@@ -286,6 +286,18 @@ impl Trial {
             if longest2 <= reach.finest2 || count >= PIECES {
                 return false;
             }
+            let known = masks[0] | masks[1] | masks[2];
+            let cut = facets[nearest(facets, known, corners)].cut(corners, reach.length);
+            if let Some(cut) = cut {
+                let between = cut.between.map(|p| mask(facets, p, reach));
+                if between.contains(&0) {
+                    return false;
+                }
+                let points = cut.parts(corners, cut.between);
+                let masks = cut.parts(masks, between);
+                self.pieces.extend(points.into_iter().zip(masks));
+                continue;
+            }
             let between = mask(facets, middle, reach);
             if between == 0 {
                 return false;

@@ -7,8 +7,26 @@
 
 use glam::DVec3;
 
+use crate::num::math;
+
 /// `sin^2` of the corner below which a triangle is a sliver: its barycentric coordinates may point at the wrong edge.
 const SLIVER: f64 = 1e-8;
+
+/// How a triangle is cut in two: the corner that is alone on its side, and the points between it and the next two.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub(super) alone: usize,
+    pub(super) between: [DVec3; 2],
+}
+
+impl Cut {
+    /// The three triangles of the two parts, from what belongs to the corners and to the points between.
+    pub(super) fn parts<T: Copy>(&self, corners: [T; 3], between: [T; 2]) -> [[T; 3]; 3] {
+        let [apex, b, c] = [0, 1, 2].map(|step| corners[(self.alone + step) % 3]);
+        let [to_b, to_c] = between;
+        [[apex, to_b, to_c], [to_b, b, c], [to_b, c, to_c]]
+    }
+}
 
 /// A triangle, its box, and the sums of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -118,6 +136,43 @@ impl Facet {
             best = best.min(self.squared_to_bc(ap));
         }
         best
+    }
+
+    /// Cuts a triangle at the wall on one of the edges, along the normal: where a large part of it is outside of the edge,
+    /// by more than `reach`, and another part inside. The inner part can be settled by this facet alone, whatever its size.
+    /// `None` for a sliver, and where the facet is not larger than `reach`: halving is better there.
+    pub(super) fn cut(&self, piece: [DVec3; 3], reach: f64) -> Option<Cut> {
+        let [ab, ac] = self.sides;
+        let smallest = self.gram[0].min(self.gram[2]);
+        if self.scale == 0.0 || smallest <= (4.0 * reach) * (4.0 * reach) {
+            return None;
+        }
+        let normal = ab.cross(ac);
+        let mut best: Option<(f64, [f64; 3])> = None;
+        for (from, along) in [(DVec3::ZERO, ab), (ab, ac - ab), (ac, -ac)] {
+            let Some(inward) = math::unit(normal.cross(along)) else {
+                continue;
+            };
+            let depths = piece.map(|p| (p - self.corner - from).dot(inward));
+            let [low, high] = [f64::min, f64::max].map(|f| depths.into_iter().reduce(f));
+            if let (Some(low), Some(high)) = (low, high)
+                && low < -reach
+                && high > 0.0
+                && best.is_none_or(|(least, _)| low < least)
+            {
+                best = Some((low, depths));
+            }
+        }
+        let (_, depths) = best?;
+        let inside = depths.map(|d| d >= 0.0);
+        let alone = (0..3)
+            .find(|&k| inside[k] != inside[(k + 1) % 3] && inside[k] != inside[(k + 2) % 3])?;
+        let between = [1, 2].map(|step| {
+            let other = (alone + step) % 3;
+            let share = depths[alone] / (depths[alone] - depths[other]);
+            piece[alone] + (piece[other] - piece[alone]) * share
+        });
+        Some(Cut { alone, between })
     }
 
     #[inline]

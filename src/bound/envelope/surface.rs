@@ -2,7 +2,8 @@
 //!
 //! The distance to one triangle of the original is a convex function: a piece whose three corners are within reach of
 //! the *same* triangle is within reach as a whole. A piece for which the triangle nearest to its centroid does not do is
-//! halved, until pieces are small (1/64 of the bound); then the answer is no. So a yes is a proof, and a no is right but
+//! cut at a wall of that triangle where the triangle is large, or halved, until pieces are small (1/64 of the bound);
+//! then the answer is no. So a yes is a proof, and a no is right but
 //! for a margin of some percent of the bound where the surface is at the bound. Pieces wait in a queue, large ones first:
 //! a centroid out of reach ends the test early.
 
@@ -77,6 +78,14 @@ impl Surface {
             let (longest2, middle, apex) = halve(piece.corners);
             if longest2 <= reach.finest2 || queue.len() >= PIECES {
                 return false;
+            }
+            if let Some(cut) = facet.cut(piece.corners, reach.length) {
+                let parts = cut.parts(piece.corners, cut.between);
+                queue.extend(parts.map(|corners| Piece {
+                    corners,
+                    near: Some(near),
+                }));
+                continue;
             }
             for replaced in [(apex + 1) % 3, (apex + 2) % 3] {
                 let mut corners = piece.corners;
