@@ -10,6 +10,8 @@
 
 #[path = "billboards/command.rs"]
 mod command;
+#[path = "billboards/measured.rs"]
+mod measured;
 
 use glam::{DVec2, DVec3};
 use lodmark::{
