@@ -146,8 +146,14 @@ impl Projection {
         };
         for end in self.ends.into_iter().flatten() {
             let sight = at - end;
+            let size = |p: DVec2| p.x.abs() + p.y.abs();
+            let lenience = LENIENCE * size(sight);
+            if lenience < 4.0 * CONTACT * (size(at) + size(end)) {
+                continue;
+            }
             let closing = sight.x.abs() * self.cos - sense * sight.y * self.sin;
-            if way * closing > sight.length_squared() * (self.sin + LENIENCE) {
+            let squared = sight.x * sight.x + sight.y * sight.y;
+            if way * (closing - lenience) > squared * (self.sin + LENIENCE) {
                 return false;
             }
         }
