@@ -8,6 +8,8 @@
     reason = "what is held against the crate's math must not use it; exact results are exact; cases are counted aloud"
 )]
 
+#[path = "billboards/borders.rs"]
+mod borders;
 #[path = "billboards/command.rs"]
 mod command;
 #[path = "billboards/measured.rs"]

@@ -11,6 +11,7 @@ use lodmark::{
         cell::ViewCell,
         heuristics,
         planar::Aperture,
+        region::profile,
         surface::{Effort, Given, Measure, Pair, SurfaceBound, measure},
         switch::{aperture_of_pixels, safe_view_distance, switch_distance},
     },
@@ -256,6 +257,20 @@ fn needles_and_edges_of_three_faces_have_no_bound() {
     assert!(
         distance.bound <= 0.0101 && distance.bound > 0.005,
         "{distance:?}"
+    );
+}
+
+#[test]
+fn a_region_is_cut_off_elsewhere_than_at_twice_its_bounded_part() {
+    let cell = ViewCell::segment([at(-1.0, 0.0, 5.0), at(1.0, 0.0, 5.0)]).expect("a segment");
+    let found = profile(&cell, DVec3::ZERO, DVec3::X, aperture(0.1), 360, None).expect("a figure");
+    let bounded = found.outline.iter().map(|p| p.length());
+    let bounded = bounded.filter(|&t| t < found.reach * (1.0 - 1e-9));
+    let largest = bounded.fold(0.0, f64::max);
+    assert!(
+        (found.reach / largest - 2.0).abs() < 1e-9,
+        "{} {largest}",
+        found.reach
     );
 }
 
