@@ -1,11 +1,16 @@
-//! How fast are exact bounds? Extents of points and intervals of faces for a segment view cell, on one thread.
+//! How fast are exact bounds? Extents of points and intervals of faces in the plane for a segment view cell, and extents
+//! in space for cells of every kind, on one thread.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use lodmark::{
-    bound::planar::{Aperture, Projection, Rays, SegmentCell, segment_extent, segment_extents},
+    bound::{
+        cell::ViewCell,
+        planar::{Aperture, Projection, Rays, SegmentCell, segment_extent, segment_extents},
+        point::extent,
+    },
     mesh::generate::Pcg32,
 };
 
@@ -94,5 +99,46 @@ fn intervals(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, extents, intervals);
+fn extents_in_space(c: &mut Criterion) {
+    let mut random = Pcg32::new(7, 8);
+    let mut at = |size: f64| {
+        let mut x = || (2.0 * random.unit() - 1.0) * size;
+        DVec3::new(x(), x(), x())
+    };
+    let tasks: Vec<(DVec3, DVec3)> = (0..COUNT)
+        .map(|_| {
+            (
+                at(8.0) + DVec3::Z * 12.0,
+                (at(1.0) + DVec3::X * 1e-3).normalize(),
+            )
+        })
+        .collect();
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let square = square.map(|[x, y]| DVec3::new(x, y, 0.0));
+    let cells = [
+        (
+            "segment",
+            ViewCell::segment([DVec3::ZERO, DVec3::new(3.0, 0.5, 0.2)]),
+        ),
+        ("square", ViewCell::polygon(&square)),
+        ("box", ViewCell::cuboid(-DVec3::ONE, DVec3::ONE)),
+        ("half-space", ViewCell::half_space(DVec3::ZERO, DVec3::Z)),
+    ];
+    let aperture = Aperture::degrees(0.5).expect("below 90");
+    let mut group = c.benchmark_group("bound");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    for (name, cell) in cells {
+        let cell = cell.expect("a cell");
+        group.bench_function(format!("point extents in space for a {name} cell"), |b| {
+            b.iter(|| {
+                for &(p, d) in &tasks {
+                    black_box(extent(&cell, p, d, aperture));
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, extents, intervals, extents_in_space);
 criterion_main!(benches);

@@ -82,7 +82,8 @@ pub fn profile(
 /// for [`profile`].
 ///
 /// # Errors
-/// [`Error::Usage`] for more than [`SHELL_LIMIT`] subdivisions or a reach that is not above 0.
+/// [`Error::Usage`] for more than [`SHELL_LIMIT`] subdivisions, a reach that is not above 0, or a point that may move in
+/// none of the directions: its region is the point itself, which has no surface.
 pub fn shell(
     cell: &ViewCell,
     point: DVec3,
@@ -97,6 +98,17 @@ pub fn shell(
     }
     let mut parts = generate::icosphere(subdivisions).into_parts();
     let (lengths, _) = lengths(cell, point, &parts.positions, aperture, reach)?;
+    if lengths.iter().all(|&t| t <= 0.0) {
+        return Err(Error::Usage(format!(
+            "the validity region of {point} is the point itself, which has no surface: {}; give a point outside the \
+             cell and an angle above 0, or ask for a figure",
+            if cell.contains(point) {
+                "viewers may stand on it"
+            } else {
+                "without an angle it may not move"
+            }
+        )));
+    }
     for (position, t) in parts.positions.iter_mut().zip(lengths) {
         *position = parts.precision.round_vector(point + *position * t);
     }

@@ -8,8 +8,12 @@
     reason = "what is held against the crate's math must not use it; exact results are exact; cases are counted aloud"
 )]
 
+#[path = "billboards/borders.rs"]
+mod borders;
 #[path = "billboards/command.rs"]
 mod command;
+#[path = "billboards/measured.rs"]
+mod measured;
 
 use glam::{DVec2, DVec3};
 use lodmark::{
@@ -441,4 +445,44 @@ fn a_distance_displaces_by_more() {
         }
     }
     assert!(cloud.quads.iter().any(|q| q.replaces.len() > 2));
+}
+
+#[test]
+fn three_walls_at_one_edge_are_taken_for_a_surface() {
+    // A non-manifold edge, a wall that stands twice in the mesh, and one turned the other way.
+    let positions = [
+        [0.0, 5.0, 0.0],
+        [0.0, 5.0, 2.0],
+        [2.0, 5.0, 0.0],
+        [-2.0, 5.0, 0.0],
+        [0.0, 7.0, 0.0],
+        [0.5, 5.0, 2.0],
+    ];
+    let mesh = Mesh::from_triangles(
+        positions.map(DVec3::from_array).to_vec(),
+        vec![
+            [0, 2, 1],
+            [0, 1, 3],
+            [0, 4, 1],
+            [0, 2, 1],
+            [0, 1, 2],
+            [1, 2, 5],
+        ],
+    )
+    .expect("indices");
+    for degrees in [0.0, 0.2, 30.0] {
+        let cloud = cloud(&mesh, &before_the_city(), &within(degrees));
+        let mut shown: Vec<u32> = cloud
+            .quads
+            .iter()
+            .flat_map(|q| q.replaces.clone())
+            .collect();
+        shown.extend(&cloud.kept);
+        shown.sort_unstable();
+        assert_eq!(shown, [0, 1, 2, 3, 4, 5], "{degrees}");
+        // The walls along the street are in one plane, the third stands across.
+        assert!(cloud.kept.is_empty() && cloud.quads.len() <= 2, "{degrees}");
+        let claimed = cloud.displacement.horizontal.to_degrees();
+        assert!(claimed <= degrees + 1e-9, "{claimed} of {degrees}");
+    }
 }

@@ -11,6 +11,7 @@ use lodmark::{
         cell::ViewCell,
         heuristics,
         planar::Aperture,
+        region::profile,
         surface::{Effort, Given, Measure, Pair, SurfaceBound, measure},
         switch::{aperture_of_pixels, safe_view_distance, switch_distance},
     },
@@ -219,6 +220,57 @@ fn a_point_cloud_has_the_exact_error_of_its_points() {
     assert!(
         found.bound >= seen && found.bound < seen * (1.0 + 1e-6),
         "{found:?} and {seen}"
+    );
+}
+
+#[test]
+fn needles_and_edges_of_three_faces_have_no_bound() {
+    // Three faces at one edge, a needle, a face of no size, open borders all around.
+    let mesh = |shift: DVec3| {
+        let positions = [
+            at(0.0, 0.0, 0.0),
+            at(1.0, 0.0, 0.0),
+            at(0.5, 1.0, 0.0),
+            at(0.5, -1.0, 0.2),
+            at(0.5, 0.0, 1.0),
+            at(3.0, 0.0, 0.0),
+        ];
+        let triangles = vec![
+            [0, 1, 2],
+            [1, 0, 3],
+            [0, 1, 4],
+            [0, 1, 5],
+            [5, 5, 5],
+            [2, 2, 3],
+        ];
+        Mesh::from_triangles(positions.map(|p| p + shift).to_vec(), triangles).expect("indices")
+    };
+    let (reference, low) = (mesh(DVec3::ZERO), mesh(at(0.0, 0.0, 0.01)));
+    let cell = ViewCell::segment([at(-1.0, 0.0, 6.0), at(2.0, 0.0, 6.0)]).expect("a segment");
+    let found = bound(&reference, &low, Measure::Angle(&cell));
+    // Nothing moves by more than 0.01, and nobody is nearer than 4.99.
+    assert!(found.bound <= 1.02 * libm::asin(0.01 / 4.99), "{found:?}");
+    let (p, s) = (at(0.5, 1.0, 0.0), at(0.5, 1.0, 0.01));
+    let seen = angle_between(at(-1.0, 0.0, 6.0), p, s);
+    assert!(found.bound > seen / 4.0, "{found:?} and {seen}");
+    let distance = bound(&reference, &low, Measure::Distance);
+    assert!(
+        distance.bound <= 0.0101 && distance.bound > 0.005,
+        "{distance:?}"
+    );
+}
+
+#[test]
+fn a_region_is_cut_off_elsewhere_than_at_twice_its_bounded_part() {
+    let cell = ViewCell::segment([at(-1.0, 0.0, 5.0), at(1.0, 0.0, 5.0)]).expect("a segment");
+    let found = profile(&cell, DVec3::ZERO, DVec3::X, aperture(0.1), 360, None).expect("a figure");
+    let bounded = found.outline.iter().map(|p| p.length());
+    let bounded = bounded.filter(|&t| t < found.reach * (1.0 - 1e-9));
+    let largest = bounded.fold(0.0, f64::max);
+    assert!(
+        (found.reach / largest - 2.0).abs() < 1e-9,
+        "{} {largest}",
+        found.reach
     );
 }
 

@@ -317,3 +317,38 @@ fn a_validity_region_is_drawn_as_a_figure_and_as_a_closed_surface() {
     assert_eq!(mesh.triangles().len(), 2 * 20 * 256);
     expect(&dir, 0, &["check", "region.ply"]);
 }
+
+#[test]
+fn a_region_without_a_surface_is_written_as_a_mesh() {
+    let dir = scene();
+    let words = |out: &'static str, point: &'static str, angle: &'static str| {
+        let fixed = ["bound-region", out, "--cell", "cell.json"];
+        [&fixed[..], &["--point", point, "--error-deg", angle]].concat()
+    };
+    // In the cell, at its end, and without an angle.
+    for (point, angle, said) in [
+        ("0.5,0,5", "5", "may stand on it"),
+        ("1,0,5", "5", "may stand on it"),
+        ("0,0,0", "0", "without an angle"),
+    ] {
+        let message = expect(&dir, 2, &words("none.ply", point, angle));
+        assert!(message.contains(said), "{message}");
+        assert!(!dir.path().join("none.ply").exists());
+        // A figure shows the point; it says so where viewers may stand on it.
+        let message = expect(&dir, 0, &words("point.svg", point, angle));
+        assert_eq!(
+            message.contains("may not move at all"),
+            angle != "0",
+            "{message}"
+        );
+        let figure = fs::read_to_string(dir.path().join("point.svg")).expect("written");
+        assert!(figure.contains("<circle") && !figure.contains("NaN"));
+    }
+    // Near a right angle the region is wide, and still a closed surface.
+    for out in ["wide.svg", "wide.ply"] {
+        expect(&dir, 0, &words(out, "0,0,0", "89.999"));
+    }
+    let mesh = io::read(&dir.path().join("wide.ply")).expect("reads").mesh;
+    assert!(mesh.positions().iter().all(|p| p.is_finite()));
+    expect(&dir, 0, &["check", "wide.ply"]);
+}

@@ -2,6 +2,9 @@
 
 #![expect(clippy::float_cmp, reason = "values that are exact")]
 
+#[path = "view_cell/hostile.rs"]
+mod hostile;
+
 use glam::DVec3;
 use lodmark::{
     bound::cell::{Shape, ViewCell, file},

@@ -22,6 +22,9 @@ use crate::num::math;
 /// is, it would also decide whether the limit beside it is found.
 const CONTACT: f64 = 1e-14;
 
+/// How much more than the aperture [`Projection::may_reach`] lets pass, against rounding.
+const LENIENCE: f64 = 1e-6;
+
 /// Offsets `rho` of the valid lines `x . d = rho`; none where `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -119,6 +122,52 @@ impl Projection {
             min: local.min + self.offset,
             max: local.max + self.offset,
         }
+    }
+
+    /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: what the
+    /// ends of the cell see of that point, or a cell without an end, at a fraction of the cost.
+    #[inline]
+    #[must_use]
+    pub fn may_reach(&self, p: DVec2, offsets: Interval) -> bool {
+        let local = self.cell.enter(p);
+        let d = self.direction;
+        let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
+        let (low, high) = (
+            offsets.min - self.offset - at.y,
+            offsets.max - self.offset - at.y,
+        );
+        // Points may go any part of the way that they may go: the nearest offset decides.
+        let (way, sense) = if low > 0.0 {
+            (low, 1.0)
+        } else if high < 0.0 {
+            (-high, -1.0)
+        } else {
+            return true;
+        };
+        for end in self.ends.into_iter().flatten() {
+            let sight = at - end;
+            let size = |p: DVec2| p.x.abs() + p.y.abs();
+            let lenience = LENIENCE * size(sight);
+            if lenience < 4.0 * CONTACT * (size(at) + size(end)) {
+                continue;
+            }
+            let closing = sight.x.abs() * self.cos - sense * sight.y * self.sin;
+            let squared = sight.x * sight.x + sight.y * sight.y;
+            if way * (closing - lenience) > squared * (self.sin + LENIENCE) {
+                return false;
+            }
+        }
+        if self.ends == [None, None] {
+            let (side, toward) = (usize::from(local.y < 0.0), usize::from(sense < 0.0));
+            let height = local.y.abs() * (1.0 + LENIENCE) + local.x.abs() * LENIENCE;
+            let tangents = self.tangents[side][toward].iter().flatten();
+            for Tangent { length, .. } in tangents {
+                if way > height * (length + LENIENCE) {
+                    return false;
+                }
+            }
+        }
+        true
     }
 
     /// With no tolerance a point may move in the direction of sight only, which all points of a face can do alike only

@@ -49,7 +49,11 @@ pub(in crate::cli) struct Options {
     subdivisions: Option<u32>,
 }
 
-pub(in crate::cli) fn run(options: &Options, common: &Common, _: &Terminal) -> Result<Verdict> {
+pub(in crate::cli) fn run(
+    options: &Options,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<Verdict> {
     let svg = options
         .output
         .extension()
@@ -75,6 +79,11 @@ pub(in crate::cli) fn run(options: &Options, common: &Common, _: &Terminal) -> R
     let cell = file::read(&options.cell)?;
     let directions = options.directions.unwrap_or(720);
     let subdivisions = options.subdivisions.unwrap_or(4);
+    for p in options.points.iter().filter(|&&p| cell.contains(p)) {
+        terminal.say(&format!(
+            "the point {p} lies in the cell, where viewers may stand on it: it may not move at all"
+        ));
+    }
     if svg {
         let text = options.figure(&cell, aperture, directions)?;
         io::atomic::write(&options.output, |file| file.write_all(text.as_bytes()))?;

@@ -6,13 +6,13 @@ use glam::DVec3;
 use super::{Mesh, Pcg32, Surface};
 
 /// Buildings along a street.
-const COLUMNS: usize = 20;
+const COLUMNS: u32 = 20;
 /// Streets of buildings, one behind the other.
-const ROWS: usize = 21;
+const ROWS: u32 = 21;
 /// From one block to the next.
 const PITCH: f64 = 2.4;
 /// Every so many streets there is a wide one.
-const WIDE_EVERY: usize = 5;
+const WIDE_EVERY: u32 = 5;
 /// Its width.
 const WIDE: f64 = 4.0;
 /// How far a facade stands behind the street line.
@@ -24,9 +24,15 @@ const SETBACKS: [f64; 3] = [0.0, 0.01, 0.03];
 /// y = 0 and the first column at x = 0: a viewer at y <= -6 is at least 6 away.
 #[must_use]
 pub fn city() -> Mesh {
+    buildings(COLUMNS, ROWS)
+}
+
+/// A [`city`] of so many buildings along a street and so many streets: 10 triangles per building.
+#[must_use]
+pub fn buildings(columns: u32, rows: u32) -> Mesh {
     let mut random = Pcg32::new(7, 1);
-    let columns = blocks(COLUMNS, &mut random);
-    let rows = blocks(ROWS, &mut random);
+    let columns = blocks(columns, &mut random);
+    let rows = blocks(rows, &mut random);
     let mut surface = Surface::default();
     for &[front, back] in &rows {
         for &[left, right] in &columns {
@@ -41,12 +47,12 @@ pub fn city() -> Mesh {
 }
 
 /// From where to where the blocks go along one axis.
-fn blocks(count: usize, random: &mut Pcg32) -> Vec<[f64; 2]> {
+fn blocks(count: u32, random: &mut Pcg32) -> Vec<[f64; 2]> {
     let mut start = 0.0;
     (1..=count)
         .map(|i| {
             let block = [start, start + 1.0 + 0.6 * random.unit()];
-            start = if i % WIDE_EVERY == 0 {
+            start = if i.is_multiple_of(WIDE_EVERY) {
                 block[1] + WIDE
             } else {
                 start + PITCH

@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use super::{Attributes, ChannelKind, Mesh, MeshParts};
 
-pub use city::{city, forest, trees};
+pub use city::{buildings, city, forest, trees};
 pub use cube::cube;
 pub use encased::encased;
 pub use engine::engine;

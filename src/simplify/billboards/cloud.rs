@@ -152,8 +152,7 @@ impl Scene<'_> {
             let face = &faces[f as usize];
             let along = || face.segments.iter().flatten().map(|p| p.dot(right));
             let beside = along().all(|x| x < low) || along().all(|x| x > high);
-            slab.faces.binary_search(&f).is_ok()
-                || !beside && face.interval(&limits).contains(slab.rho)
+            slab.faces.binary_search(&f).is_ok() || !beside && face.fits(&limits, slab.rho)
         };
         quad.drawn = triangles(&mut (0..faces.len() as u32).filter(shown));
         Some(quad)

@@ -299,6 +299,25 @@ impl PlanFace {
     }
 }
 
+impl PlanFace {
+    /// Whether the face may be projected on the plane at `rho`.
+    pub(super) fn fits(&self, limits: &Limits, rho: f64) -> bool {
+        self.may_reach(limits, Interval { min: rho, max: rho })
+            && self.interval(limits).contains(rho)
+    }
+
+    /// False only where the face may be projected on no plane at one of `offsets`.
+    pub(super) fn may_reach(&self, limits: &Limits, offsets: Interval) -> bool {
+        let Limits::Viewers(sides) = limits else {
+            return true;
+        };
+        let [a, b] = self.segments[0];
+        sides
+            .iter()
+            .all(|side| side.may_reach(a, offsets) && side.may_reach(b, offsets))
+    }
+}
+
 /// A direction of projection and what limits it.
 #[derive(Clone, Debug)]
 pub(super) enum Limits {

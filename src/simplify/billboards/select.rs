@@ -14,7 +14,7 @@ use super::{
     plan::{Limits, PlanCell, PlanFace},
     sweep::{Stab, Sweep},
 };
-use crate::{Progress, Result, num::math};
+use crate::{Progress, Result, bound::planar::Interval, num::math};
 
 /// A vertical plane and the faces that are projected on it.
 #[derive(Clone, Debug)]
@@ -176,10 +176,7 @@ impl Selection<'_> {
         (0..self.faces.len() as u32)
             .into_par_iter()
             .filter(|&face| self.values[face as usize] > 0)
-            .filter(|&face| {
-                let interval = self.faces[face as usize].interval(&limits);
-                interval.contains(rho)
-            })
+            .filter(|&face| self.faces[face as usize].fits(&limits, rho))
             .collect()
     }
 
@@ -203,8 +200,15 @@ impl Selection<'_> {
             .filter(|&face| self.values[face as usize] > 0)
             .filter(|&face| {
                 let slack = 3.0 * step * middle(face).distance(centre);
-                let interval = self.faces[face as usize].interval(&limits);
-                interval.min - slack <= stab.rho + slack && stab.rho - slack <= interval.max + slack
+                let wanted = Interval {
+                    min: stab.rho - 2.0 * slack,
+                    max: stab.rho + 2.0 * slack,
+                };
+                let face = &self.faces[face as usize];
+                face.may_reach(&limits, wanted) && {
+                    let interval = face.interval(&limits);
+                    interval.min <= wanted.max && wanted.min <= interval.max
+                }
             })
             .collect();
         let mut best = (stab.gain, normal, stab.rho);
@@ -235,10 +239,7 @@ impl Selection<'_> {
         let mut left = faces;
         for slab in slabs {
             let limits = self.limits(slab.normal);
-            let fits = |&face: &u32| {
-                let interval = self.faces[face as usize].interval(&limits);
-                interval.contains(slab.rho)
-            };
+            let fits = |&face: &u32| self.faces[face as usize].fits(&limits, slab.rho);
             let (found, rest): (Vec<u32>, Vec<u32>) = left.into_iter().partition(fits);
             slab.faces.extend(found);
             slab.faces.sort_unstable();

@@ -432,3 +432,58 @@ fn a_viewpoint_a_rounding_error_beside_a_face_lets_it_go() {
     let interval = case.interval();
     assert!(interval.max <= through + 1e-12, "{interval:?}, {through}");
 }
+
+#[test]
+fn a_quick_look_at_a_point_refuses_an_offset_that_its_face_may_have() {
+    let (mut refused, mut beyond) = (0, 0);
+    for class in CLASSES {
+        let (count, mut random) = cases(500 + class as u64);
+        for number in 0..count {
+            let case = draw(class, &mut random);
+            let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
+            let [a, b] = case.cell;
+            let mut cells = vec![SegmentCell::between(a, b).expect("finite ends")];
+            if a != b {
+                cells.push(SegmentCell::line(a, b - a).expect("two points"));
+            }
+            for cell in cells {
+                let projection = Projection::new(&cell, case.direction, aperture);
+                let valid = projection.interval(case.face[0], case.face[1]);
+                let may = |p: DVec2, low: f64, high: f64| {
+                    projection.may_reach(
+                        p,
+                        Interval {
+                            min: low,
+                            max: high,
+                        },
+                    )
+                };
+                let t = random.unit();
+                for p in [case.face[0], case.face[1], case.point(t)] {
+                    let own = p.dot(case.direction);
+                    for rho in [valid.min, valid.max, valid.min / 2.0 + valid.max / 2.0] {
+                        if rho.is_finite() && valid.contains(rho) {
+                            let s = random.unit();
+                            assert!(
+                                may(p, rho, rho) && may(p, rho - s, rho) && may(p, rho, rho + s),
+                                "{class:?} {number}: {rho} of {valid:?}, {case:?}"
+                            );
+                        }
+                    }
+                    // The point alone, by its own interval: what lies well beyond is refused.
+                    let alone = projection.interval(p, p);
+                    for (end, sense) in [(alone.max, 1.0), (alone.min, -1.0)] {
+                        let far = own + (end - own) * 1.5 + sense * 0.01 * SCALE;
+                        if far.is_finite() && far.abs() < 1e3 * SCALE {
+                            beyond += 1;
+                            refused +=
+                                u32::from(!may(p, far.min(far + sense), far.max(far + sense)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{refused} of {beyond} offsets beyond are refused at a look");
+    assert!(refused > beyond / 2, "{refused} of {beyond}");
+}

@@ -1,0 +1,59 @@
+//! Where textures, quads and the ground that is free of viewers end.
+
+use glam::DVec3;
+use lodmark::mesh::Mesh;
+
+use super::{before_the_city, blocks, cloud, within};
+
+#[test]
+fn a_filter_mixes_a_texel_with_nothing() {
+    let mesh = blocks(40);
+    let cloud = cloud(&mesh, &before_the_city(), &within(0.3));
+    let (mut border, mut far) = (0, 0);
+    for quad in cloud.quads.iter().filter(|q| q.replaces.len() > 4).take(8) {
+        let texture = quad.texture(&mesh);
+        let (width, height) = (texture.width(), texture.height());
+        for y in 0..height {
+            for x in 0..width {
+                let texel = texture.at(x, y);
+                if texel[3] != 0 {
+                    continue;
+                }
+                let mut beside = (y.saturating_sub(1)..(y + 2).min(height))
+                    .flat_map(|j| (x.saturating_sub(1)..(x + 2).min(width)).map(move |i| (i, j)));
+                if beside.any(|(i, j)| texture.at(i, j)[3] != 0) {
+                    border += 1;
+                    assert!(texel[..3].iter().all(|&c| c > 0), "{texel:?} at {x}, {y}");
+                } else {
+                    far += 1;
+                    assert_eq!(texel, [0; 4], "{x}, {y}");
+                }
+            }
+        }
+    }
+    assert!(border > 100 && far > 100, "{border} {far}");
+}
+
+#[test]
+fn a_wall_behind_the_plane_of_viewers_is_moved() {
+    let positions = [
+        [0.0, -8.0, 0.0],
+        [2.0, -8.0, 0.0],
+        [0.0, -8.0, 3.0],
+        [0.0, -7.0, 0.0],
+        [0.0, -3.0, 0.0],
+        [0.0, -3.0, 3.0],
+        [0.0, 2.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [0.0, 2.0, 3.0],
+    ];
+    let mesh = Mesh::from_triangles(
+        positions.map(DVec3::from_array).to_vec(),
+        // Among the viewers, through their border, before them.
+        vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+    )
+    .expect("indices");
+    let cloud = cloud(&mesh, &before_the_city(), &within(1.0));
+    assert_eq!(cloud.kept, [0, 1]);
+    assert_eq!(cloud.quads.len(), 1);
+}
