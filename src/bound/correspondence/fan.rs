@@ -90,7 +90,8 @@ impl Part {
     }
 }
 
-/// Two triangulations of one polygon: the faces before, and after them a [`Star`] and parts that keep their place.
+/// Two triangulations of one polygon: the faces before, and after them a star around the new vertex and parts that keep
+/// their place.
 #[derive(Clone, Debug)]
 pub struct Fan {
     pub(super) before: Vec<Before>,
