@@ -25,7 +25,7 @@ not. The report says what was measured, where it was largest, what is proven, an
 (near the claim itself, where no proof ends).
 
 An angle is checked for the viewers in a cell with the file that `simplify --bound-out` wrote: that its pieces cover every \
-original triangle exactly once, and that no point and what stands for it are seen under more than the angle, at samples \
+original triangle without a gap, and that no point and what stands for it are seen under more than the angle, at samples \
 and by proof. Without that file only a weaker property is checked: that every original point has some point of LOW within \
 the angle.")]
 pub(super) struct Options {
@@ -214,16 +214,16 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
     );
     if found.part_of_cell {
         answer!(
-            "the cell has no end: only viewpoints within four sizes of the original were looked from"
+            "the cell has no end: only viewpoints in a part of it, some sizes of the original wide, were looked from"
         );
     }
     if let Some(pieces) = found.pieces {
         match found.gap {
             Some((triangle, gap)) => answer!(
-                "BROKEN: {pieces} pieces do not cover original triangle {} exactly once ({gap:?})",
+                "BROKEN: {pieces} pieces do not cover original triangle {} ({gap:?})",
                 in_file(original, triangle, reference).unwrap_or(triangle as usize)
             ),
-            None => answer!("{pieces} pieces cover every original triangle exactly once"),
+            None => answer!("{pieces} pieces cover every original triangle"),
         }
     }
     if let Some(w) = &found.worst {
@@ -238,6 +238,9 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
     }
     if found.violations > 0 {
         answer!("BROKEN: {} sightings are above the claim", found.violations);
+    }
+    if let Some(degrees) = found.at_most_deg {
+        answer!("no viewer sees any of them under more than {degrees:.9} degrees: proven");
     }
     if found.property == Property::Correspondence {
         answer!(

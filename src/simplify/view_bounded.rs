@@ -16,7 +16,7 @@ use crate::{
     Error, Progress, Result,
     bound::{
         cell::ViewCell,
-        correspondence::{AngleLimit, Collapse, Correspondence, Face, Fan, Scratch},
+        correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
     },
     collapse::{Admitted, LiveMesh, Method, Patch, PatchFace, Proposal, Refusal, Site},
 };
@@ -104,7 +104,7 @@ impl ViewBounded {
         Ok(Self {
             placing: Memoryless::new(live, options.placement),
             placement: options.placement,
-            map: Correspondence::new(originals, alive, &limit),
+            map: Correspondence::new(originals, alive),
             limit,
             scratch: Buffers::default(),
             lost: false,
@@ -146,10 +146,10 @@ impl ViewBounded {
         } = buffers;
         site.patch(to, patch);
         let fan = lay_out(site.live, patch, removed, added).ok_or(Refusal::Unmapped)?;
-        if self.map.allows(&fan, &self.limit, pieces) {
-            Ok(())
-        } else {
-            Err(Refusal::Bound)
+        match self.map.allows(&fan, &self.limit, pieces) {
+            Answer::Allowed => Ok(()),
+            Answer::Denied => Err(Refusal::Bound),
+            Answer::Tangled => Err(Refusal::Unmapped),
         }
     }
 }
@@ -233,9 +233,8 @@ impl Method for ViewBounded {
             pieces,
             ..
         } = &mut self.scratch;
-        match lay_out(live, patch, removed, added) {
-            Some(fan) => self.map.apply(&fan, &self.limit, pieces),
-            None => self.lost = true,
-        }
+        let applied =
+            lay_out(live, patch, removed, added).is_some_and(|fan| self.map.apply(&fan, pieces));
+        self.lost |= !applied;
     }
 }

@@ -5,7 +5,7 @@ use lodmark::{
     Silent,
     bound::{
         cell::ViewCell,
-        correspondence::{Allowance, Collapse, Correspondence, Face, Fan, Scratch},
+        correspondence::{Collapse, Correspondence, Face, Fan, Scratch},
     },
     mesh::{Mesh, canonical},
     simplify::{Amount, Options, simplify, view_bounded::ViewBoundedOptions},
@@ -16,19 +16,6 @@ use crate::{
     cases,
     shapes::{self, Random},
 };
-
-/// Everything is allowed.
-struct Anything;
-
-impl Allowance for Anything {
-    fn allows(&self, _: u32, _: &[DVec3], _: &[DVec3]) -> bool {
-        true
-    }
-
-    fn radius(&self, _: u32) -> f64 {
-        f64::INFINITY
-    }
-}
 
 /// What lies around a collapsed edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,8 +193,8 @@ proptest! {
             return Ok(());
         };
         let originals: Vec<[DVec3; 3]> = removed.iter().map(|f| f.points).collect();
-        let mut map = Correspondence::new(originals.clone(), |_| true, &Anything);
-        map.apply(&fan, &Anything, &mut Scratch::default());
+        let mut map = Correspondence::new(originals.clone(), |_| true);
+        assert!(map.apply(&fan, &mut Scratch::default()));
         let after = |face: u32| added.iter().find(|f| f.id == face).map_or([DVec3::NAN; 3], |f| f.points);
         let normal: DVec3 = originals.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a)).sum();
         let normal = normal.normalize();
@@ -269,8 +256,8 @@ fn a_flat_fan_moves_no_point() {
         };
         let fan = Fan::new(&collapse).expect("flat and convex");
         let originals = removed.iter().map(|f| f.points).collect();
-        let mut map = Correspondence::new(originals, |_| true, &Anything);
-        map.apply(&fan, &Anything, &mut Scratch::default());
+        let mut map = Correspondence::new(originals, |_| true);
+        assert!(map.apply(&fan, &mut Scratch::default()));
         for face in &added {
             assert!(
                 map.displacement(face.id) < 1e-8,
@@ -323,11 +310,11 @@ fn folded_torn_and_turned_fans_have_no_map() {
     assert!(!lay_out(&twice, &added, to), "every face is there twice");
 }
 
-/// A map through as many collapses as there are, and the mesh it leads to.
-fn run(mesh: &Mesh, triangles: u64) -> (Correspondence, Mesh) {
-    let cell = ViewCell::point(DVec3::new(0.0, 0.0, 1e4)).expect("a point");
+/// A map through as many collapses as move no point farther than `most`, and the mesh it leads to.
+fn run(mesh: &Mesh, triangles: u64, most: f64) -> (Correspondence, Mesh) {
+    let cell = ViewCell::half_space(DVec3::new(0.0, 0.0, 1e4), DVec3::NEG_Z).expect("a half-space");
     let options = Options::view_bounded(
-        ViewBoundedOptions::new(cell, 89.0),
+        ViewBoundedOptions::new(cell, (most / 1e4).to_degrees()),
         Amount::Triangles(triangles),
     );
     let outcome = simplify(mesh, &options, &Silent).expect("valid");
@@ -342,18 +329,22 @@ proptest! {
 
     #[test]
     fn after_many_collapses_the_map_still_covers_everything_once_without_a_tear(
-        kind in 0_usize..8, seed: u64, share in 1_u64..9,
+        kind in 0_usize..8, seed: u64, share in 1_u64..9, most in prop::sample::select(vec![0.05, 0.3, 1e3]),
     ) {
         // In canonical order no triangle repeats a vertex: such a one has no points to keep account of.
         let mesh = canonical(&shapes::any(kind, seed)).mesh;
-        let (map, low) = run(&mesh, (mesh.triangles().len() as u64 * share / 10).max(1));
+        let (map, low) = run(&mesh, (mesh.triangles().len() as u64 * share / 10).max(1), most);
         prop_assert_eq!(map.face_count(), low.triangles().len());
         prop_assert_eq!(map.triangle_count(), mesh.triangles().len());
         let face_points = |face: u32| low.corners(face as usize);
         let size = { let (a, b) = mesh.bounds().expect("not empty"); (b - a).length() };
         let mut random = Random(seed);
         for t in 0..mesh.triangles().len() as u32 {
-            prop_assert!((covered(&map, t) - 1.0).abs() < 1e-6, "{} of {t}", covered(&map, t));
+            prop_assert!((covered(&map, t) - 1.0).abs() < 1e-12, "{} of {t}", covered(&map, t));
+        }
+        if most > 1.0 {
+            // Pushed together beyond recognition, neighbours need not agree along their common side.
+            return Ok(());
         }
         let edges = lodmark::mesh::Edges::of(&mesh);
         for (edge, triangles) in edges.iter() {

@@ -12,6 +12,7 @@ use lodmark::{
     simplify::{Amount, Options, Outcome, Stop, simplify, view_bounded::ViewBoundedOptions},
 };
 use proptest::prelude::*;
+use sha2::{Digest, Sha256};
 
 use crate::{
     cases,
@@ -167,6 +168,61 @@ proptest! {
         let outcome = run(&mesh, cell, degrees);
         let report = verified(&mesh, &outcome, cell, degrees);
         prop_assert!(report.holds, "{:?}", report);
+    }
+}
+
+/// A record with another value in the place of a word, and its checksum.
+fn altered(bytes: &[u8], at: usize, word: u32) -> Vec<u8> {
+    let mut bytes = bytes[..bytes.len() - 32].to_vec();
+    bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
+    bytes.extend(Sha256::digest(&bytes));
+    bytes
+}
+
+/// Where the weights in original triangles are in a record: two words each.
+fn sources(bytes: &[u8], triangles: usize) -> Vec<usize> {
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four"));
+    let (mut at, mut found) = (92, Vec::new());
+    for _ in 0..triangles {
+        let pieces = word(at);
+        at += 4;
+        for _ in 0..pieces {
+            let corners = word(at + 4) as usize;
+            found.extend((0..corners).map(|c| at + 8 + 16 * c));
+            at += 8 + 16 * corners;
+        }
+    }
+    assert_eq!(at + 32, bytes.len());
+    found
+}
+
+proptest! {
+    #![proptest_config(cases(200))]
+
+    #[test]
+    fn a_corner_that_is_one_unit_off_leaves_a_gap_that_is_found(
+        at: prop::sample::Index, second: bool, up: bool,
+    ) {
+        let mesh = canonical(&generate::icosphere(2)).mesh;
+        let cell = &cells()[1];
+        let outcome = run(&mesh, cell, 4.0);
+        let map = outcome.correspondence.as_ref().expect("this method keeps account");
+        let mut bytes = Vec::new();
+        map.write(&mesh, &outcome.mesh, &mut bytes).expect("memory");
+        let places = sources(&bytes, mesh.triangles().len());
+        prop_assert!(places.len() > 3 * mesh.triangles().len(), "nothing was cut");
+        let place = at.get(&places) + if second { 4 } else { 0 };
+        let word = u32::from_le_bytes(bytes[place..place + 4].try_into().expect("four"));
+        let word = if up { word.checked_add(1) } else { word.checked_sub(1) };
+        let check = |bytes: &[u8]| {
+            let record = Record::from_bytes(bytes, "a.corr").ok()?;
+            Some(angles(&mesh, &outcome.mesh, cell, 4.0, Some(&record), 9, &Silent).expect("fits"))
+        };
+        prop_assert!(check(&bytes).expect("as written").gap.is_none());
+        // Outside of the triangle it is not even read.
+        if let Some(report) = word.and_then(|word| check(&altered(&bytes, place, word))) {
+            prop_assert!(report.gap.is_some() && !report.holds, "{report:?}");
+        }
     }
 }
 

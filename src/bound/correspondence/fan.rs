@@ -5,12 +5,13 @@
 //! after, has no layout. Projection moves no point of a flat surface. At a boundary the outlines differ: there the new
 //! vertex stands, in the plane, for the point of the old boundary next to it, and the old boundary vertices beside that
 //! for points of the new boundary edges, so that both layouts fill the same polygon: some new faces consist of two parts.
-//! That they do fill it exactly once is not assumed but measured, by the areas of all intersections.
+//! Every triangle is turned the same way, those after go around the new vertex no more than once, and the areas are the
+//! same: so both fill the polygon once.
 //! Plane coordinates are scaled so that the fan has a size near 1.
 
 use glam::{DVec2, DVec3};
 
-use super::clip::{Bounded, Corner, clip, double_area};
+use super::star::Star;
 use crate::num::math::unit;
 
 /// A face of the mesh that changes.
@@ -41,47 +42,60 @@ pub struct Collapse<'a> {
 
 /// Twice the least area of a triangle in the plane, where the fan has a size near 1: weights in it are good to 1e-10.
 const LEAST_AREA: f64 = 1e-6;
-/// By how much areas may fail to add up.
+/// By how much the areas before and after may differ.
 const AREA_ERROR: f64 = 1e-9;
 /// Where a boundary vertex may lie on its new edge: not on the ends.
 const ENDS: f64 = 1e-3;
 
-/// A triangle of the plane that is a face before.
+/// A face before, in the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     pub(super) face: Face,
     pub(super) plane: [DVec2; 3],
+    /// The face keeps its place in the plane and becomes this part; nothing of it lies in the star.
+    pub(super) outer: Option<Part>,
+    /// Whether the side across from each corner is shared with faces that do not change, or keep their place.
+    pub(super) fixed: [bool; 3],
 }
 
 /// A triangle of the plane that is a face after, or a part of one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct After {
+pub(super) struct Part {
     pub(super) face: Face,
-    pub(super) plane: Bounded,
+    pub(super) plane: [DVec2; 3],
     /// The weights of the face's corners at the corners of the part.
-    pub(super) weights: [[f64; 3]; 3],
+    weights: [[f64; 3]; 3],
 }
 
-impl After {
-    /// The weights of the face's corners at a point of the plane inside the part.
-    pub(super) fn weights_at(&self, p: DVec2) -> [f64; 3] {
-        let part = self.plane.weights(p);
+impl Part {
+    fn new(face: Face, plane: [DVec2; 3], weights: [[f64; 3]; 3]) -> Option<Self> {
+        (double_area(&plane) > LEAST_AREA).then_some(Self {
+            face,
+            plane,
+            weights,
+        })
+    }
+
+    /// The weights of the second and third corner of the face at a point of the plane, or at one of the part next to it.
+    pub(super) fn weights_at(&self, p: DVec2) -> [f64; 2] {
+        let [a, b, c] = self.plane;
+        let of = |q: DVec2, r: DVec2| (q - p).perp_dot(r - p).max(0.0);
+        let w = [of(b, c), of(c, a), of(a, b)];
+        let sum = w[0] + w[1] + w[2];
         let of = |k: usize| {
-            part[0] * self.weights[0][k]
-                + part[1] * self.weights[1][k]
-                + part[2] * self.weights[2][k]
+            (w[0] * self.weights[0][k] + w[1] * self.weights[1][k] + w[2] * self.weights[2][k])
+                / sum
         };
-        [of(0), of(1), of(2)]
+        [of(1), of(2)]
     }
 }
 
-/// Two triangulations of one polygon.
-#[derive(Clone, Debug, Default)]
+/// Two triangulations of one polygon: the faces before, and after them a star around the new vertex and parts that keep
+/// their place.
+#[derive(Clone, Debug)]
 pub struct Fan {
     pub(super) before: Vec<Before>,
-    pub(super) after: Vec<After>,
-    /// For every face before, which parts after may overlap it: one bit each.
-    pub(super) overlaps: Vec<Vec<u16>>,
+    pub(super) star: Star,
 }
 
 /// A face before with exactly one end, and its side across from that end.
@@ -134,41 +148,68 @@ impl Fan {
             return None;
         }
         let projection = Projection::of(collapse)?;
-        let mut fan = Self::default();
+        let mut layout = Layout {
+            before: Vec::with_capacity(collapse.removed.len()),
+            parts: Vec::with_capacity(sectors.len()),
+        };
         for &face in collapse.removed {
             let plane = face.points.map(|p| projection.of_point(p));
             if double_area(&plane) <= LEAST_AREA {
                 return None;
             }
-            fan.before.push(Before { face, plane });
+            layout.before.push(Before {
+                face,
+                plane,
+                outer: None,
+                fixed: [false; 3],
+            });
         }
-        if closed {
-            fan.surround(collapse, &sectors, projection.of_point(collapse.to))?;
+        let hub = if closed {
+            let hub = projection.of_point(collapse.to);
+            layout.surround(collapse, &sectors, hub)?;
+            hub
         } else {
-            fan.border(collapse, &sectors, &projection)?;
+            layout.border(collapse, &sectors, &projection)?
+        };
+        layout.find_fixed(&is_end);
+        if !layout.fills_the_same() {
+            return None;
         }
-        fan.find_overlaps()?;
-        Some(fan)
+        Some(Self {
+            before: layout.before,
+            star: Star::new(hub, closed, layout.parts)?,
+        })
     }
+}
 
+/// A fan in the making.
+struct Layout {
+    before: Vec<Before>,
+    /// The parts around the new vertex, each with the corner that this is.
+    parts: Vec<(Part, usize)>,
+}
+
+impl Layout {
     /// The parts after the collapse of an edge inside: one for each face.
     fn surround(&mut self, collapse: &Collapse<'_>, sectors: &[Sector], new: DVec2) -> Option<()> {
         for sector in sectors {
             let face = after(collapse, sector)?;
-            let mut plane = self.plane_of(sector);
+            let mut plane = self.before_of(sector)?.plane;
             plane[sector.apex] = new;
-            self.push(face, plane, CORNERS)?;
+            self.parts
+                .push((Part::new(face, plane, CORNERS)?, sector.apex));
         }
         Some(())
     }
 
-    /// The parts after the collapse of an edge with an end on the boundary, or both.
+    /// The parts after the collapse of an edge with an end on the boundary, or both; the answer is where the new vertex
+    /// lies in the plane.
     fn border(
         &mut self,
         collapse: &Collapse<'_>,
         sectors: &[Sector],
         projection: &Projection,
-    ) -> Option<()> {
+    ) -> Option<DVec2> {
         let (first, last) = (sectors[0], sectors[sectors.len() - 1]);
         let [at_first, at_last] = [first, last].map(|s| s.face.points[s.apex]);
         // Which point of the old boundary the new vertex stands for: along the edge where both ends are on it.
@@ -190,7 +231,8 @@ impl Fan {
         let count = sectors.len();
         for (i, sector) in sectors.iter().enumerate() {
             let face = after(collapse, sector)?;
-            let plane = self.plane_of(sector);
+            let before = self.before_of(sector)?;
+            let plane = before.plane;
             let (apex, from, to) = (sector.apex, (sector.apex + 1) % 3, (sector.apex + 2) % 3);
             let mut moved = plane;
             moved[apex] = new;
@@ -203,7 +245,7 @@ impl Fan {
                 None
             };
             let Some((corner, old)) = on_edge else {
-                self.push(face, moved, CORNERS)?;
+                self.parts.push((Part::new(face, moved, CORNERS)?, apex));
                 continue;
             };
             let s = share(old, collapse.to, face.points[corner]).clamp(ENDS, 1.0 - ENDS);
@@ -213,67 +255,47 @@ impl Fan {
             // The outer part is the old face itself, its apex now a point of the new edge.
             let mut outer = CORNERS;
             outer[apex] = weights;
-            self.push(face, plane, outer)?;
+            before.outer = Some(Part::new(face, plane, outer)?);
             let mut inner = CORNERS;
             inner[corner] = weights;
             let mut within = moved;
             within[corner] = plane[apex];
-            self.push(face, within, inner)?;
+            self.parts.push((Part::new(face, within, inner)?, apex));
         }
-        Some(())
+        Some(new)
     }
 
-    fn plane_of(&self, sector: &Sector) -> [DVec2; 3] {
-        let id = sector.face.id;
-        let known = self.before.iter().find(|b| b.face.id == id);
-        known.map_or([DVec2::ZERO; 3], |b| b.plane)
-    }
-
-    fn push(&mut self, face: Face, plane: [DVec2; 3], weights: [[f64; 3]; 3]) -> Option<()> {
-        if double_area(&plane) <= LEAST_AREA {
-            return None;
-        }
-        self.after.push(After {
-            face,
-            plane: Bounded::new(plane),
-            weights,
-        });
-        Some(())
-    }
-
-    /// Finds what overlaps what, and that each layout fills the other exactly once.
-    fn find_overlaps(&mut self) -> Option<()> {
-        let mut after: Vec<f64> = self
-            .after
+    /// Finds the sides of the link, and those of faces that keep their place.
+    fn find_fixed(&mut self, is_end: &impl Fn(&u32) -> bool) {
+        let outer: Vec<[u32; 3]> = self
+            .before
             .iter()
-            .map(|a| -double_area(&a.plane.corners))
+            .filter(|b| b.outer.is_some())
+            .map(|b| b.face.corners)
             .collect();
-        let (mut polygon, mut spare) = (Vec::new(), Vec::new());
-        for before in &self.before {
-            let mut missing = double_area(&before.plane);
-            let mut overlaps = Vec::new();
-            for (j, part) in self.after.iter().enumerate() {
-                if part.plane.is_apart(&before.plane) {
-                    continue;
-                }
-                overlaps.push(j as u16);
-                polygon.clear();
-                polygon.extend(before.plane.map(|plane| Corner {
-                    plane,
-                    source: [0.0; 2],
-                }));
-                if clip(&mut polygon, &mut spare, &part.plane) {
-                    let area = polygon_area(&polygon);
-                    missing -= area;
-                    after[j] += area;
-                }
-            }
-            if missing.abs() > AREA_ERROR {
-                return None;
-            }
-            self.overlaps.push(overlaps);
+        for before in &mut self.before {
+            let corners = before.face.corners;
+            before.fixed = [0, 1, 2].map(|k| {
+                let side = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
+                let shared =
+                    |other: &[u32; 3]| *other != corners && side.iter().all(|v| other.contains(v));
+                !side.iter().any(is_end) || outer.iter().any(shared)
+            });
         }
-        after.iter().all(|a| a.abs() <= AREA_ERROR).then_some(())
+    }
+
+    /// Whether the parts after fill what the faces before do: at a boundary that is not certain.
+    fn fills_the_same(&self) -> bool {
+        let before: f64 = self.before.iter().map(|b| double_area(&b.plane)).sum();
+        let outer = self.before.iter().filter(|b| b.outer.is_some());
+        let kept: f64 = outer.map(|b| double_area(&b.plane)).sum();
+        let star: f64 = self.parts.iter().map(|(p, _)| double_area(&p.plane)).sum();
+        (before - kept - star).abs() <= AREA_ERROR
+    }
+
+    fn before_of(&mut self, sector: &Sector) -> Option<&mut Before> {
+        let id = sector.face.id;
+        self.before.iter_mut().find(|b| b.face.id == id)
     }
 }
 
@@ -317,12 +339,9 @@ fn share(p: DVec3, from: DVec3, to: DVec3) -> f64 {
     if along.is_finite() { along } else { 0.0 }
 }
 
-fn polygon_area(polygon: &[Corner]) -> f64 {
-    let mut sum = 0.0;
-    for pair in polygon.windows(2).skip(1) {
-        sum += double_area(&[polygon[0].plane, pair[0].plane, pair[1].plane]);
-    }
-    sum
+/// Twice the signed area.
+fn double_area([a, b, c]: &[DVec2; 3]) -> f64 {
+    (*b - *a).perp_dot(*c - *a)
 }
 
 /// From space to the plane of a fan.

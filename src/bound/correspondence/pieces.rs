@@ -1,17 +1,26 @@
 //! The map from the surface as it was to the surface as it is: every original triangle in convex pieces, each mapped by
 //! one affine map into one live face.
 //!
-//! A collapse cuts the pieces of the faces before along the faces after (in the plane of their [`Fan`]). Displacement is a
-//! convex function on a piece, so it is largest at a corner: nothing is added up over collapses, and a surface that
-//! returns to where it was is as good as one that never moved. The notes (4.9) propose a number per face that adds up the
-//! steps instead; here that only accepts quickly what is far from the limit.
-//! Weights are kept in units of 2^-31, and judged as kept. Memory: 16 bytes per corner of a piece.
+//! A collapse puts together what a triangle has in the faces before (in the plane of their [`Fan`]), as far as its outline,
+//! and cuts that along the faces after. Displacement is a convex function on a piece, so it is largest at a corner:
+//! nothing is added up over collapses, and a surface that returns to where it was is as good as one that never moved. The
+//! notes (4.9) propose a number per face that adds up the steps instead, and that cuts are kept for ever; here no more is
+//! kept of old faces, whose sides would cut every triangle into ever smaller pieces: between the corners that are left the
+//! map is a new one, and is judged as such.
+//! Weights are in units of 2^-31, and judged as kept. Pieces fit together exactly: every side of one is, bit for bit in
+//! weights of the original triangle, a side of another one in the opposite direction, or lies on a side of the triangle,
+//! and those together make up that side. So every point of the triangle lies in a piece, in a triangle from its first
+//! corner, whatever rounding did to the corners: the winding numbers of all pieces add up to that of the triangle. It lies
+//! in no more than one up to rounding, as those triangles all lie the right way up. Target weights are in their faces.
+//! Triangles that share a side map it to the same points, up to rounding, as far as tests find with displacements of up
+//! to a third of a side; of surfaces that are pushed together farther than that no more is promised than the limit. Memory: 16 bytes per corner of a piece.
 
 use glam::DVec3;
 
 use super::{
-    clip::{Corner as PlaneCorner, Place, clip, place},
-    fan::{After, Fan},
+    fan::{Before, Fan, Part},
+    outline::{self, OutlineScratch, outlines, tidy, turn_to_fan},
+    star::CutScratch,
 };
 use crate::num::{fixed::Weights31, math::sqrt};
 
@@ -29,7 +38,7 @@ pub struct Corner {
 pub struct Piece<'a> {
     /// The original triangle.
     pub triangle: u32,
-    /// A convex polygon, counter-clockwise in the triangle.
+    /// A polygon, counter-clockwise in the triangle up to rounding; mapped linearly on the triangles from its first corner.
     pub corners: &'a [Corner],
 }
 
@@ -43,6 +52,17 @@ pub trait Allowance {
     fn radius(&self, triangle: u32) -> f64;
 }
 
+/// The answer about a collapse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Everything may be where the collapse would put it.
+    Allowed,
+    /// Something may not.
+    Denied,
+    /// The map would tangle up.
+    Tangled,
+}
+
 /// The pieces that a face stands for.
 #[derive(Clone, Debug, Default)]
 struct FacePieces {
@@ -51,8 +71,6 @@ struct FacePieces {
     corners: Vec<Corner>,
     /// Largest displacement of any corner.
     displacement: f64,
-    /// Least radius that is allowed to all of them.
-    radius: f64,
     /// The face never changed and stands for itself.
     itself: bool,
 }
@@ -68,6 +86,11 @@ impl FacePieces {
     }
 }
 
+/// Corners that all pieces may have together, for each original triangle and for small meshes: this bounds the memory.
+/// Simplified scans need some five for each triangle.
+const CORNERS_PER_TRIANGLE: usize = 64;
+const CORNERS_AT_LEAST: usize = 1 << 16;
+
 /// The corners of a face as weights.
 const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
@@ -82,12 +105,50 @@ fn itself() -> [Corner; 3] {
 /// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    whole: Vec<PlaneCorner>,
-    polygon: Vec<PlaneCorner>,
-    spare: Vec<PlaneCorner>,
+    /// Pieces of triangles that are in several: triangle, face before, and corners in `cut`.
+    split: Vec<(u32, u32, [u32; 2])>,
+    cut: Vec<outline::Corner>,
+    outline: Vec<outline::Corner>,
+    ends: Vec<usize>,
+    outlining: OutlineScratch,
+    cutting: CutScratch,
+    placed: Placed,
+}
+
+/// A part of a piece where it would be.
+#[derive(Clone, Debug, Default)]
+struct Placed {
+    part: Vec<outline::Corner>,
     corners: Vec<Corner>,
     from: Vec<DVec3>,
     to: Vec<DVec3>,
+}
+
+impl Placed {
+    /// From a polygon in the plane to corners in space; false where it covers nothing, `None` where it lies over itself.
+    fn place(
+        &mut self,
+        original: [DVec3; 3],
+        polygon: &[outline::Corner],
+        part: &Part,
+    ) -> Option<bool> {
+        tidy(polygon, &mut self.part);
+        if !self.part.is_empty() && !turn_to_fan(&mut self.part) {
+            return None;
+        }
+        self.corners.clear();
+        self.from.clear();
+        self.to.clear();
+        for corner in &self.part {
+            // What is judged is what is kept.
+            let target = Weights31::new(part.weights_at(corner.plane));
+            let source = corner.source;
+            self.corners.push(Corner { source, target });
+            self.from.push(at(original, source.get()));
+            self.to.push(at(part.face.points, target.get()));
+        }
+        Some(!self.part.is_empty())
+    }
 }
 
 /// What became of every point of an original surface.
@@ -97,20 +158,17 @@ pub struct Correspondence {
     faces: Vec<FacePieces>,
     /// The corners of every piece that is a whole face.
     itself: [Corner; 3],
+    /// Corners of all pieces that were cut.
+    total: usize,
 }
 
 impl Correspondence {
     /// Every triangle stands for itself, under its index as the face's id; `alive` says which ones exist. O(n).
     #[must_use]
-    pub fn new(
-        originals: Vec<[DVec3; 3]>,
-        alive: impl Fn(u32) -> bool,
-        allowance: &impl Allowance,
-    ) -> Self {
+    pub fn new(originals: Vec<[DVec3; 3]>, alive: impl Fn(u32) -> bool) -> Self {
         let faces = (0..originals.len() as u32)
             .map(|t| FacePieces {
                 itself: alive(t),
-                radius: allowance.radius(t),
                 ..FacePieces::default()
             })
             .collect();
@@ -118,6 +176,7 @@ impl Correspondence {
             originals,
             faces,
             itself: itself(),
+            total: 0,
         }
     }
 
@@ -132,6 +191,7 @@ impl Correspondence {
             faces: vec![whole; originals.len()],
             originals,
             itself: itself(),
+            total: 0,
         }
     }
 
@@ -151,7 +211,6 @@ impl Correspondence {
                 pieces.corners = itself().to_vec();
             }
             pieces.displacement = length(pieces.displacement);
-            pieces.radius = length(pieces.radius);
             pieces
         });
         let faces = faces.collect();
@@ -159,6 +218,7 @@ impl Correspondence {
             originals: self.originals.iter().map(|t| t.map(&units)).collect(),
             faces,
             itself: self.itself,
+            total: self.total,
         }
     }
 
@@ -217,157 +277,155 @@ impl Correspondence {
 
     /// Whether everything that the faces of a fan stand for may be where the collapse would put it.
     ///
-    /// Time: a few clips per piece of the fan, less where the fan as a whole is far from its limits.
+    /// Time: linear in the corners of the pieces of the fan, and that of the allowance for each piece after.
     #[must_use]
-    pub fn allows(&self, fan: &Fan, allowance: &impl Allowance, scratch: &mut Scratch) -> bool {
-        (0..fan.before.len()).all(|i| {
-            self.allows_by_step(fan, i, scratch)
-                || self.visit(fan, i, scratch, |piece, _, scratch| {
-                    allowance.allows(piece.triangle, &scratch.from, &scratch.to)
-                })
-        })
-    }
-
-    /// The displacement so far and the step together are allowed to everything in a face.
-    fn allows_by_step(&self, fan: &Fan, i: usize, scratch: &mut Scratch) -> bool {
-        let before = &fan.before[i];
-        let known = &self.faces[before.face.id as usize];
-        let mut step = 0.0_f64;
-        for &j in &fan.overlaps[i] {
-            let after = &fan.after[j as usize];
-            scratch.polygon.clear();
-            for (plane, source) in before.plane.iter().zip(CORNERS) {
-                scratch.polygon.push(PlaneCorner {
-                    plane: *plane,
-                    source,
-                });
-            }
-            if clip(&mut scratch.polygon, &mut scratch.spare, &after.plane) {
-                for corner in &scratch.polygon {
-                    let [_, u, v] = after.weights_at(corner.plane);
-                    let d = at(after.face.points, [u, v]) - at(before.face.points, corner.source);
-                    step = step.max(d.dot(d));
-                }
-            }
+    pub fn allows(&self, fan: &Fan, allowance: &impl Allowance, scratch: &mut Scratch) -> Answer {
+        let mut corners = self.total;
+        let all = self.visit(fan, scratch, |triangle, _, placed| {
+            corners += placed.corners.len();
+            allowance.allows(triangle, &placed.from, &placed.to)
+        });
+        let most = CORNERS_AT_LEAST.max(CORNERS_PER_TRIANGLE * self.originals.len());
+        match all {
+            Some(true) if corners - self.cut_corners(fan) > most => Answer::Tangled,
+            Some(true) => Answer::Allowed,
+            Some(false) => Answer::Denied,
+            None => Answer::Tangled,
         }
-        known.displacement + sqrt(step) <= known.radius
     }
 
-    /// Calls `visit` with every part of every piece of face `i` of the fan, the part after that it goes to, and its
-    /// corners in `scratch`; false as soon as `visit` is.
+    /// Corners of the pieces of a fan that were cut.
+    fn cut_corners(&self, fan: &Fan) -> usize {
+        let faces = fan.before.iter().map(|b| &self.faces[b.face.id as usize]);
+        faces.map(|pieces| pieces.corners.len()).sum()
+    }
+
+    /// Calls `visit` with every piece after the collapse, its original triangle and the part that it goes to, as long as
+    /// that says true. `None` for a tangle.
     fn visit(
         &self,
         fan: &Fan,
-        i: usize,
         scratch: &mut Scratch,
-        mut visit: impl FnMut(Piece<'_>, &After, &mut Scratch) -> bool,
-    ) -> bool {
-        let before = &fan.before[i];
-        let [a, b, c] = before.plane;
-        let within = |[u, v]: [f64; 2]| a + (b - a) * u + (c - a) * v;
-        for piece in self.pieces(before.face.id) {
-            let mut parts = 0;
-            scratch.whole.clear();
-            scratch
-                .whole
-                .extend(piece.corners.iter().map(|corner| PlaneCorner {
-                    plane: within(corner.target.get()),
-                    source: corner.source.get(),
-                }));
-            for &j in &fan.overlaps[i] {
-                let after = &fan.after[j as usize];
-                let place = place(&scratch.whole, &after.plane);
-                if place == Place::Outside {
+        mut visit: impl FnMut(u32, &Part, &Placed) -> bool,
+    ) -> Option<bool> {
+        let Scratch {
+            split,
+            cut,
+            outline,
+            ends,
+            outlining,
+            cutting,
+            placed,
+        } = scratch;
+        split.clear();
+        cut.clear();
+        for (i, before) in fan.before.iter().enumerate() {
+            for piece in self.pieces(before.face.id) {
+                let start = cut.len();
+                cut.extend(in_plane(before, piece));
+                let triangle = piece.triangle;
+                let mut place = |part: &Part, polygon: &[outline::Corner]| {
+                    let covers = placed.place(self.original(triangle), polygon, part)?;
+                    Some(!covers || visit(triangle, part, placed))
+                };
+                if let Some(part) = &before.outer {
+                    if !place(part, &cut[start..])? {
+                        return Some(false);
+                    }
+                } else if is_whole(piece) {
+                    if !fan.star.cut(&cut[start..], cutting, place)? {
+                        return Some(false);
+                    }
+                } else {
+                    split.push((triangle, i as u32, [start as u32, cut.len() as u32]));
                     continue;
                 }
-                scratch.polygon.clone_from(&scratch.whole);
-                if place == Place::Inside
-                    || clip(&mut scratch.polygon, &mut scratch.spare, &after.plane)
-                {
-                    parts += 1;
-                    self.place(piece.triangle, after, scratch);
-                    if !visit(piece, after, scratch) {
-                        return false;
-                    }
-                    if place == Place::Inside {
-                        break;
-                    }
-                }
-            }
-            if parts == 0 {
-                // Thinner than rounding and between two parts: it goes whole to the one it is nearest to.
-                scratch.polygon.clone_from(&scratch.whole);
-                let nearest = fan.overlaps[i].iter().map(|&j| &fan.after[j as usize]);
-                let nearest = nearest.max_by(|x, y| {
-                    let depth = |p: &After| p.plane.depth(scratch.whole[0].plane);
-                    depth(x).total_cmp(&depth(y))
-                });
-                if let Some(after) = nearest {
-                    self.place(piece.triangle, after, scratch);
-                    if !visit(piece, after, scratch) {
-                        return false;
-                    }
-                }
+                cut.truncate(start);
             }
         }
-        true
+        split.sort_unstable();
+        for same in split.chunk_by(|a, b| a.0 == b.0) {
+            let triangle = same[0].0;
+            let pieces = same
+                .iter()
+                .map(|&(.., [a, b])| &cut[a as usize..b as usize]);
+            outlines(pieces, outlining, outline, ends)?;
+            let mut start = 0;
+            for &end in ends.iter() {
+                let place = |part: &Part, polygon: &[outline::Corner]| {
+                    let covers = placed.place(self.original(triangle), polygon, part)?;
+                    Some(!covers || visit(triangle, part, placed))
+                };
+                if !fan.star.cut(&outline[start..end], cutting, place)? {
+                    return Some(false);
+                }
+                start = end;
+            }
+        }
+        Some(true)
     }
 
-    /// From a polygon in the plane to corners in space.
-    fn place(&self, triangle: u32, after: &After, scratch: &mut Scratch) {
-        scratch.corners.clear();
-        scratch.from.clear();
-        scratch.to.clear();
-        for corner in &scratch.polygon {
-            let [_, u, v] = after.weights_at(corner.plane);
-            // What is judged is what is kept.
-            let corner = Corner {
-                source: Weights31::new(corner.source),
-                target: Weights31::new([u, v]),
-            };
-            scratch.corners.push(corner);
-            let from = at(self.original(triangle), corner.source.get());
-            scratch.from.push(from);
-            scratch.to.push(at(after.face.points, corner.target.get()));
-        }
-    }
-
-    /// Takes a collapse over.
-    pub fn apply(&mut self, fan: &Fan, allowance: &impl Allowance, scratch: &mut Scratch) {
-        let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(fan.after.len());
-        for after in &fan.after {
-            if new.iter().all(|(id, _)| *id != after.face.id) {
-                let empty = FacePieces {
-                    radius: f64::INFINITY,
-                    ..FacePieces::default()
-                };
-                new.push((after.face.id, empty));
+    /// Takes over a collapse that was allowed; false, and nothing is changed, for one that would tangle up.
+    #[must_use]
+    pub fn apply(&mut self, fan: &Fan, scratch: &mut Scratch) -> bool {
+        let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(fan.before.len());
+        let all = self.visit(fan, scratch, |triangle, part, placed| {
+            let known = new.iter().position(|(id, _)| *id == part.face.id);
+            let i = known.unwrap_or(new.len());
+            if known.is_none() {
+                new.push((part.face.id, FacePieces::default()));
             }
+            let into = &mut new[i].1;
+            into.corners.extend_from_slice(&placed.corners);
+            into.heads.push((triangle, into.corners.len() as u32));
+            for (from, to) in placed.from.iter().zip(&placed.to) {
+                let d = *to - *from;
+                into.displacement = into.displacement.max(sqrt(d.dot(d)));
+            }
+            true
+        });
+        if all != Some(true) {
+            return false;
         }
-        for i in 0..fan.before.len() {
-            self.visit(fan, i, scratch, |piece, after, scratch| {
-                let Some((_, into)) = new.iter_mut().find(|(id, _)| *id == after.face.id) else {
-                    return true;
-                };
-                into.corners.extend_from_slice(&scratch.corners);
-                into.heads.push((piece.triangle, into.corners.len() as u32));
-                for (from, to) in scratch.from.iter().zip(&scratch.to) {
-                    let d = *to - *from;
-                    into.displacement = into.displacement.max(sqrt(d.dot(d)));
-                }
-                into.radius = into.radius.min(allowance.radius(piece.triangle));
-                true
-            });
-        }
+        self.total -= self.cut_corners(fan);
         for before in &fan.before {
             self.faces[before.face.id as usize] = FacePieces::default();
         }
         for (id, mut pieces) in new {
+            self.total += pieces.corners.len();
             pieces.heads.shrink_to_fit();
             pieces.corners.shrink_to_fit();
             self.faces[id as usize] = pieces;
         }
+        true
     }
+}
+
+/// Units that the weight of a corner on a side may be off by: a few roundings.
+const OFF: u32 = 8;
+
+/// The corners of a piece of a face in the plane.
+fn in_plane(before: &Before, piece: Piece<'_>) -> impl Iterator<Item = outline::Corner> {
+    let [a, b, c] = before.plane;
+    piece.corners.iter().map(move |corner| {
+        let [u, v] = corner.target.get();
+        let [x, y] = corner.target.bits();
+        let weights = [Weights31::ONE - x - y, x, y];
+        outline::Corner {
+            source: corner.source,
+            plane: a + (b - a) * u + (c - a) * v,
+            fixed: (0..3).any(|k| before.fixed[k] && weights[k] <= OFF),
+        }
+    })
+}
+
+/// True where a piece is all of its triangle.
+fn is_whole(piece: Piece<'_>) -> bool {
+    let is_corner = |c: &Corner| {
+        let [u, v] = c.source.bits();
+        u == Weights31::ONE || v == Weights31::ONE || (u == 0 && v == 0)
+    };
+    piece.corners.len() == 3 && piece.corners.iter().all(is_corner)
 }
 
 /// A point of a triangle by the weights of its second and third corner.

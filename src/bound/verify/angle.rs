@@ -1,12 +1,13 @@
 //! Checks the claim that no viewer in a cell sees a point of the original and what stands for it under more than an angle.
 //!
 //! What stands for what is read from a [`Record`], and three things are checked: that the pieces of every original
-//! triangle cover it exactly once, in whole numbers; the angle at samples: every corner of every piece and points spread
-//! over the original, from every corner of the cell and from viewpoints all over it, with a search from the worst of
-//! them; and for every piece a proof for all its points and all viewpoints, which either holds or is undecided.
+//! triangle leave nothing of it out, in whole numbers; for every piece the largest angle for all its points and all
+//! viewpoints, from below and above, as near as it takes to know the largest one of all to a five-hundredth and
+//! whether it is above the claim; and, as a check of that, the angle at points spread over the original, from every corner
+//! of the cell and from viewpoints all over it.
 //! Without a record only a weaker property can be checked: that every original point has *some* point of the simplified
-//! surface within the angle ([`Property::NearestInAngle`]). Endless cells are looked from only within four sizes of the
-//! original around the foot of its centre. An angle breaks a claim where it is larger by a hundred-millionth or 1e-10
+//! surface within the angle ([`Property::NearestInAngle`]). Endless cells are looked from within at least four sizes of
+//! the original around the foot of its centre; beyond, displacements are bounded by their lengths. An angle breaks a claim where it is larger by a hundred-millionth or 1e-10
 //! radians. The same result for any number of threads.
 
 use glam::DVec3;
@@ -14,12 +15,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
-    cover::{self, Gap},
-    interval,
+    cover::Gap,
     nearest::Facets,
     record::{ONE, Record},
     sight::{Viewpoints, angle, tangent2},
-    sighting::{Found, Seen, worst_first},
+    sighting::{Found, Seen},
     spread::{Spot, Spread},
 };
 use crate::{
@@ -28,13 +28,12 @@ use crate::{
     mesh::Mesh,
     num::{
         Frame,
-        math::{cos, length, sin},
+        math::{atan2, cos, length, sin, sqrt},
     },
 };
 
-/// Samples of a task; original triangles of a task.
+/// Samples of a task, and tasks between two reports.
 const CHUNK: u64 = 4_096;
-const TRIANGLES: u32 = 64;
 const GROUP: usize = 256;
 /// Beyond rounding: of the tangent, and in radians.
 const SLACK: [f64; 2] = [1e-8, 1e-10];
@@ -78,15 +77,18 @@ pub struct AngleReport {
     pub sightings: u64,
     /// How many of them are seen under more than the claim.
     pub violations: u64,
-    /// The largest angle.
+    /// The largest angle: with a record, the largest one of all up to a five-hundredth where `at_most_deg` says so.
     pub worst: Option<Sighting>,
     /// Number of pieces; `None` without a record.
     pub pieces: Option<usize>,
-    /// The first original triangle that its pieces do not cover exactly once, and why.
+    /// The first original triangle that its pieces do not cover, and why.
     pub gap: Option<(u32, Gap)>,
+    /// No viewer sees any point and what stands for it under more than this many degrees: proven. `None` without a record,
+    /// and where no angle below 90 degrees is.
+    pub at_most_deg: Option<f64>,
     /// The share of the area for which the claim is not proven, in [0, 1]; 1 without a record.
     pub undecided_area: f64,
-    /// The cell has no end, and only a part of it was looked from.
+    /// The cell has no end, and viewpoints that were left out may break the claim.
     pub part_of_cell: bool,
     /// Nothing was found that breaks the claim.
     pub holds: bool,
@@ -144,9 +146,9 @@ pub fn angles(
         record,
     };
     let mut found = Found::default();
-    let (gap, undecided) = match record {
-        Some(record) => check.pieces(record, &mut found, progress)?,
-        None => (None, 1.0),
+    let mapped = match record {
+        Some(record) => Some(check.mapped(record, &mut found, progress)?),
+        None => None,
     };
     check.sample(samples, &mut found, progress)?;
     let worst = found.worst.map(|w| Sighting {
@@ -156,6 +158,7 @@ pub fn angles(
         viewpoint: frame.leave(w.viewpoint).to_array(),
         angle_deg: angle(w.point, w.replacement, w.viewpoint) / DEGREE,
     });
+    let gap = mapped.as_ref().and_then(|m| m.gap);
     let within = found.worst.is_none_or(|w| w.tangent2 <= check.limit2);
     Ok(AngleReport {
         claimed_deg: degrees,
@@ -168,177 +171,29 @@ pub fn angles(
         worst,
         pieces: record.map(Record::piece_count),
         gap,
-        undecided_area: undecided,
-        part_of_cell: check.viewpoints.partial,
+        at_most_deg: match &mapped {
+            Some(m) if m.at_most2.is_finite() => Some(atan2(sqrt(m.at_most2), 1.0) / DEGREE),
+            _ => None,
+        },
+        undecided_area: mapped.as_ref().map_or(1.0, |m| m.undecided),
+        part_of_cell: match &mapped {
+            Some(m) => m.partial,
+            None => check.viewpoints.end.is_some(),
+        },
         holds: within && gap.is_none(),
     })
 }
 
-struct Check<'a> {
-    originals: Vec<[DVec3; 3]>,
-    targets: Vec<[DVec3; 3]>,
-    viewpoints: Viewpoints,
-    limit2: f64,
+pub(super) struct Check<'a> {
+    pub(super) originals: Vec<[DVec3; 3]>,
+    pub(super) targets: Vec<[DVec3; 3]>,
+    pub(super) viewpoints: Viewpoints,
+    /// Square of the tangent that is claimed.
+    pub(super) limit2: f64,
     record: Option<&'a Record>,
 }
 
 impl Check<'_> {
-    /// Corners of a piece and of what stands for it.
-    fn load(&self, record: &Record, triangle: u32, piece: u32, into: &mut Vec<[DVec3; 2]>) {
-        let (target, corners) = record.piece(piece);
-        let at = |[a, b, c]: [DVec3; 3], u: u32, v: u32| {
-            let (u, v) = (f64::from(u) / f64::from(ONE), f64::from(v) / f64::from(ONE));
-            a + (b - a) * u + (c - a) * v
-        };
-        into.clear();
-        into.extend(corners.iter().map(|w| {
-            [
-                at(self.originals[triangle as usize], w[0], w[1]),
-                at(self.targets[target as usize], w[2], w[3]),
-            ]
-        }));
-    }
-
-    /// Covers, corners and proofs of all pieces: the first gap, and the share of the area that is undecided.
-    fn pieces(
-        &self,
-        record: &Record,
-        found: &mut Found,
-        progress: &dyn Progress,
-    ) -> Result<(Option<(u32, Gap)>, f64)> {
-        let count = self.originals.len() as u32;
-        let tasks = count.div_ceil(TRIANGLES);
-        let (mut gap, mut undecided) = (None, 0.0);
-        let mut worst: Vec<Seen> = Vec::new();
-        for start in (0..tasks).step_by(GROUP) {
-            progress.step("check the pieces", u64::from(start), u64::from(tasks))?;
-            let group: Vec<_> = (start..tasks.min(start + GROUP as u32))
-                .into_par_iter()
-                .map(|i| {
-                    let mut all = Found::default();
-                    let (mut first, mut open, mut worst) = (None, 0.0, Vec::new());
-                    for t in i * TRIANGLES..count.min((i + 1) * TRIANGLES) {
-                        let mut own = Found::default();
-                        let (wrong, area) = self.pieces_of(record, t, &mut own);
-                        first = first.or(wrong.map(|wrong| (t, wrong)));
-                        open += area;
-                        all.add(&own);
-                        worst.extend(own.worst);
-                    }
-                    worst_first(&mut worst);
-                    (all, worst, first, open)
-                })
-                .collect();
-            for (all, seen, first, open) in group {
-                found.add(&all);
-                worst.extend(seen);
-                gap = gap.or(first);
-                undecided += open;
-            }
-            worst_first(&mut worst);
-        }
-        let searched: Vec<Found> = worst
-            .par_iter()
-            .flat_map_iter(|&seen| {
-                let corners = &self.viewpoints.corners;
-                let sum = corners.iter().fold(DVec3::ZERO, |sum, &v| sum + v);
-                let middle = sum / corners.len() as f64;
-                [seen.viewpoint, middle].map(|viewpoint| Seen { viewpoint, ..seen })
-            })
-            .map(|start| self.search(record, start))
-            .collect();
-        for own in &searched {
-            found.add(own);
-        }
-        let total: f64 = self.originals.iter().map(double_area).sum();
-        let share = if total > 0.0 { undecided / total } else { 0.0 };
-        Ok((gap, share.min(1.0)))
-    }
-
-    /// What is wrong with the cover of a triangle, and twice the area of its pieces without a proof.
-    fn pieces_of(&self, record: &Record, triangle: u32, found: &mut Found) -> (Option<Gap>, f64) {
-        let mut corners = Vec::new();
-        let mut undecided = 0.0;
-        for piece in record.of(triangle) {
-            self.load(record, triangle, piece, &mut corners);
-            for &[point, replacement] in &corners {
-                for &viewpoint in &self.viewpoints.corners {
-                    let seen = Seen {
-                        tangent2: tangent2(point, replacement, viewpoint),
-                        triangle,
-                        piece,
-                        point,
-                        replacement,
-                        viewpoint,
-                    };
-                    found.see(seen, self.limit2);
-                }
-            }
-            let proven = !self.viewpoints.partial
-                && interval::proves(&corners, &self.viewpoints.corners, self.limit2);
-            if !proven {
-                let area =
-                    |i: usize| double_area(&[corners[0][0], corners[i - 1][0], corners[i][0]]);
-                undecided += (2..corners.len()).map(area).sum::<f64>();
-            }
-        }
-        (cover::check(record, triangle), undecided)
-    }
-
-    /// Looks for a larger angle from a sighting on: points and viewpoints move towards corners by smaller and smaller steps.
-    fn search(&self, record: &Record, start: Seen) -> Found {
-        let (mut found, mut corners) = (Found::default(), Vec::new());
-        self.load(record, start.triangle, start.piece, &mut corners);
-        for fan in 2..corners.len() {
-            let three = [corners[0], corners[fan - 1], corners[fan]];
-            let middle = [0, 1].map(|k| (three[0][k] + three[1][k] + three[2][k]) / 3.0);
-            // Where the angle is largest for one viewpoint need not be where it is for the best one.
-            for [point, replacement] in [[middle[0], middle[1]], three[0], three[1], three[2]] {
-                let from = Seen {
-                    tangent2: tangent2(point, replacement, start.viewpoint),
-                    point,
-                    replacement,
-                    ..start
-                };
-                self.climb(three, from, &mut found);
-            }
-        }
-        found
-    }
-
-    /// Moves point and viewpoint towards corners while that makes the angle larger, by smaller and smaller steps.
-    fn climb(&self, three: [[DVec3; 2]; 3], mut here: Seen, found: &mut Found) {
-        let mut step = 0.5;
-        for _ in 0..48 {
-            let before = here.tangent2;
-            let mut attempt = |point, replacement, viewpoint, here: &mut Seen| {
-                let seen = Seen {
-                    tangent2: tangent2(point, replacement, viewpoint),
-                    point,
-                    replacement,
-                    viewpoint,
-                    ..*here
-                };
-                found.see(seen, self.limit2);
-                if seen.tangent2 > here.tangent2 {
-                    *here = seen;
-                }
-            };
-            for [p, s] in three {
-                let (point, replacement) =
-                    (here.point.lerp(p, step), here.replacement.lerp(s, step));
-                attempt(point, replacement, here.viewpoint, &mut here);
-            }
-            for &v in &self.viewpoints.corners {
-                let viewpoint = here.viewpoint.lerp(v, step);
-                attempt(here.point, here.replacement, viewpoint, &mut here);
-            }
-            if here.tangent2 <= before {
-                step *= 0.6;
-            }
-        }
-    }
-
     fn sample(&self, samples: u64, found: &mut Found, progress: &dyn Progress) -> Result<()> {
         let spread = Spread::new(&self.originals, samples);
         let facets = Facets::new(&self.targets);
@@ -429,7 +284,6 @@ impl Check<'_> {
             let seen = Seen {
                 tangent2: tangent2(point, replacement, viewpoint),
                 triangle: spot.triangle,
-                piece,
                 point,
                 replacement,
                 viewpoint,
@@ -451,7 +305,6 @@ impl Check<'_> {
             let seen = Seen {
                 tangent2: tangent2(point, replacement, viewpoint),
                 triangle: spot.triangle,
-                piece: 0,
                 point,
                 replacement,
                 viewpoint,
@@ -460,8 +313,4 @@ impl Check<'_> {
         }
         near
     }
-}
-
-fn double_area([a, b, c]: &[DVec3; 3]) -> f64 {
-    length((*b - *a).cross(*c - *a))
 }

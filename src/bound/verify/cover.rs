@@ -1,116 +1,62 @@
-//! Whether the pieces of an original triangle cover it exactly once, in whole numbers.
+//! Whether the pieces of an original triangle cover all of it, in whole numbers and without a tolerance.
 //!
-//! Corners are multiples of 2^-31 of the triangle's sides. The areas of the pieces must add up to that of the triangle, no
-//! piece may be turned over, and no two may overlap: for each pair there is a side of one that has the other on its
-//! outside. Corners were rounded to whole units every time that a collapse cut a piece, so areas hold up to a few units
-//! along every side, and sides of neighbours may have drifted apart by more. So "once" is meant up to a ten-millionth of a
-//! side: narrower overlaps are not found.
+//! Corners are multiples of 2^-31 of the triangle's sides. Every side of a piece must be the side of another one in the
+//! opposite direction, bit for bit, or lie on a side of the triangle; and those must make up the whole side, counted by
+//! their directions. Then the winding numbers of all pieces around any point add up to that of the triangle: 1 inside. So
+//! every point lies in a piece, in one of the triangles from its first corner, and wherever pieces lie over each other,
+//! others are turned over to make up for it; what is claimed of pieces is claimed of all their triangles, either way up.
 
 use super::record::{ONE, Record};
 
-/// Units by which corners may be off on average along a side.
-const ROUNDING: f64 = 4.0;
-/// Units by which two neighbours may have drifted into each other: a ten-millionth of a side.
-const DRIFT: f64 = 214.0;
-
-type Point = [i64; 2];
+type Point = [u32; 2];
 
 /// What is wrong with the pieces of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Gap {
-    /// The areas of the pieces do not add up to that of the triangle.
-    Area,
-    /// A piece is turned over or not convex.
-    Turned,
-    /// Two pieces overlap.
-    Overlap,
+    /// A side of a piece inside the triangle is not the side of another piece in the opposite direction.
+    Inside,
+    /// The sides of pieces along a side of the triangle do not make it up once.
+    Border,
 }
 
 /// Holds the pieces of an original triangle to it; the answer is the first thing that is wrong.
 pub(super) fn check(record: &Record, triangle: u32) -> Option<Gap> {
-    let polygons: Vec<Vec<Point>> = record
-        .of(triangle)
-        .map(|piece| {
-            let corners = record.piece(piece).1.iter();
-            corners
-                .map(|c| [i64::from(c[0]), i64::from(c[1])])
-                .collect()
-        })
-        .collect();
-    let (mut area, mut boundary) = (0_i128, 0.0_f64);
-    for polygon in &polygons {
-        let n = polygon.len();
-        for i in 0..n {
-            let (p, q) = (polygon[i], polygon[(i + 1) % n]);
-            area += i128::from(p[0]) * i128::from(q[1]) - i128::from(p[1]) * i128::from(q[0]);
-            let side = extent(p, q);
-            boundary += side;
-            let r = polygon[(i + 2) % n];
-            if turn(p, q, r) < -DRIFT * (side + extent(q, r) + DRIFT) {
-                return Some(Gap::Turned);
-            }
-        }
-    }
-    let whole = i128::from(ONE) * i128::from(ONE);
-    if ((area - whole) as f64).abs() > ROUNDING * (boundary + f64::from(ONE)) {
-        return Some(Gap::Area);
-    }
-    overlap(&polygons).then_some(Gap::Overlap)
-}
-
-fn extent(p: Point, q: Point) -> f64 {
-    ((q[0] - p[0]).abs() + (q[1] - p[1]).abs()) as f64
-}
-
-/// Twice the area of a triangle; positive to the left.
-fn turn(p: Point, q: Point, r: Point) -> f64 {
-    let cross = i128::from(q[0] - p[0]) * i128::from(r[1] - p[1])
-        - i128::from(q[1] - p[1]) * i128::from(r[0] - p[0]);
-    cross as f64
-}
-
-/// True where two polygons have more in common than their sides.
-fn overlap(polygons: &[Vec<Point>]) -> bool {
-    let bounds = |polygon: &[Point]| {
-        polygon
-            .iter()
-            .fold([i64::MAX, i64::MIN, i64::MAX, i64::MIN], |b, p| {
-                [
-                    b[0].min(p[0]),
-                    b[1].max(p[0]),
-                    b[2].min(p[1]),
-                    b[3].max(p[1]),
-                ]
-            })
-    };
-    let mut order: Vec<([i64; 4], &Vec<Point>)> = polygons.iter().map(|p| (bounds(p), p)).collect();
-    order.sort_by_key(|(b, _)| *b);
-    for (i, (b, polygon)) in order.iter().enumerate() {
-        for (c, other) in &order[i + 1..] {
-            if c[0] >= b[1] {
-                break;
-            }
-            if c[2] >= b[3] || b[2] >= c[3] {
+    let mut inside: Vec<(Point, Point, i64)> = Vec::new();
+    let mut border: Vec<(u32, u32, i64)> = Vec::new();
+    for piece in record.of(triangle) {
+        let corners = record.piece(piece).1;
+        for (i, p) in corners.iter().enumerate() {
+            let q = corners[(i + 1) % corners.len()];
+            let (p, q) = ([p[0], p[1]], [q[0], q[1]]);
+            if p == q {
                 continue;
             }
-            if !apart(polygon, other) && !apart(other, polygon) {
-                return true;
+            match (0..3).find_map(|side| Some((side, along(side, p)?, along(side, q)?))) {
+                Some((side, from, to)) => border.extend([(side, from, -1), (side, to, 1)]),
+                None if p < q => inside.push((p, q, 1)),
+                None => inside.push((q, p, -1)),
             }
         }
     }
-    false
+    inside.sort_unstable();
+    let alone = |same: &[(Point, Point, i64)]| same.iter().map(|s| s.2).sum::<i64>() != 0;
+    if inside.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).any(alone) {
+        return Some(Gap::Inside);
+    }
+    // What begins and ends nowhere but at the ends of a side is that side.
+    border.extend((0..3).flat_map(|side| [(side, 0, 1), (side, ONE, -1)]));
+    border.sort_unstable();
+    let open = |same: &[(u32, u32, i64)]| same.iter().map(|s| s.2).sum::<i64>() != 0;
+    let gap = border.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).any(open);
+    gap.then_some(Gap::Border)
 }
 
-/// True where a side of `polygon` has all of `other` on its outside, up to rounding.
-fn apart(polygon: &[Point], other: &[Point]) -> bool {
-    let n = polygon.len();
-    (0..n).any(|i| {
-        let (p, q) = (polygon[i], polygon[(i + 1) % n]);
-        let side = extent(p, q);
-        side > 0.0
-            && other
-                .iter()
-                .all(|&r| turn(p, q, r) <= DRIFT * (side + DRIFT))
-    })
+/// How far along a side of the triangle a point lies on it.
+fn along(side: u32, [u, v]: Point) -> Option<u32> {
+    match side {
+        0 => (v == 0).then_some(u),
+        1 => (u64::from(u) + u64::from(v) == u64::from(ONE)).then_some(v),
+        _ => (u == 0).then(|| ONE - v),
+    }
 }

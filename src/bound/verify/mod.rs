@@ -8,13 +8,14 @@
 mod angle;
 mod cover;
 mod distance;
-mod interval;
+mod mapped;
 mod nearest;
 mod proof;
 mod record;
 mod sight;
 mod sighting;
 mod spread;
+mod worst;
 
 pub use angle::{AngleReport, Property, Sighting, angles};
 pub use cover::Gap;

@@ -2,15 +2,11 @@
 
 use glam::DVec3;
 
-/// Pieces from which the worst angle is searched for.
-const SEARCHES: usize = 64;
-
 /// A sighting in frame units.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) tangent2: f64,
     pub(super) triangle: u32,
-    pub(super) piece: u32,
     pub(super) point: DVec3,
     pub(super) replacement: DVec3,
     pub(super) viewpoint: DVec3,
@@ -41,10 +37,4 @@ impl Found {
             self.worst = Some(seen);
         }
     }
-}
-
-/// The sightings that are searched from, the worst first; those of equal angles in their order.
-pub(super) fn worst_first(seen: &mut Vec<Seen>) {
-    seen.sort_by(|a, b| b.tangent2.total_cmp(&a.tangent2));
-    seen.truncate(SEARCHES);
 }

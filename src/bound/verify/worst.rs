@@ -1,0 +1,242 @@
+//! The largest angle under which any viewer of a cell sees a point of a piece and what stands for it: from below and from
+//! above, by branch and bound.
+//!
+//! For points `P` of a piece, displacements `D` and viewpoints `V`, with `R = P - V`, the tangent is `|D x R|` over
+//! `R . (R + D)`. Over the piece both are of second degree in the weights of its corners, so a mean of their Bernstein
+//! coefficients, one for each pair of corners: numerators are no longer than the longest of these, denominators no less
+//! than the least. A coefficient of the numerator is linear in `V` and longest at a corner of the part of the cell; one
+//! of the denominator is `|V|^2` plus something linear, and `|V|^2` is at least its tangent plane at the middle `C`. So
+//! the quotients at pairs and corners, with `|V - C|^2` left out, bound all others, and their error is of second order in
+//! the size of part and piece. Where that is not near enough to what is attained somewhere, the larger of part and piece
+//! is halved; the part with the largest bound comes first.
+
+use std::{cmp::Ordering, collections::BinaryHeap};
+
+use glam::DVec3;
+
+use super::{sight::tangent2, sighting::Seen};
+
+/// How near an upper bound must come to what is attained: a share of the tangent.
+const NEAR: f64 = 0.002;
+/// The same for squares.
+const NEAR2: f64 = (1.0 + NEAR) * (1.0 + NEAR);
+/// How near the squares must come where the claim lies between them.
+const DECIDED2: f64 = 1.0 + 2e-6;
+/// Halvings for one piece; what is not settled then touches the cell or comes very near.
+const HALVINGS: usize = 1 << 12;
+/// A part of every bound that is given away for rounding.
+const MARGIN: f64 = 1e-11;
+
+/// Twice: corners of a piece, and corners of what stands for it.
+type Corners = Vec<[DVec3; 2]>;
+
+/// A piece, or a part of one, and a simplex of viewpoints.
+struct Part {
+    corners: Corners,
+    viewers: Vec<DVec3>,
+    /// Square of the tangent.
+    upper2: f64,
+    /// Order of making, for ties.
+    number: usize,
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_bound = self.upper2.total_cmp(&other.upper2);
+        by_bound.then(other.number.cmp(&self.number))
+    }
+}
+
+/// What is wanted of a piece.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted {
+    /// Square of the tangent that is claimed.
+    pub(super) claim2: f64,
+    /// Of the largest one known: what stays below that by bound is not looked at any closer.
+    pub(super) known2: f64,
+}
+
+impl Wanted {
+    /// True where closer bounds than `lower2` and `upper2` change nothing: they are near each other or what is known, and
+    /// the claim lies not between them or both are next to it.
+    pub(super) fn is_met(&self, lower2: f64, upper2: f64) -> bool {
+        let decided = upper2 <= self.claim2 || lower2 > self.claim2 || upper2 <= lower2 * DECIDED2;
+        decided && upper2 <= lower2.max(self.known2) * NEAR2
+    }
+}
+
+/// A first bound of a piece for all simplices of viewpoints, and the largest angle between corners in `seen`.
+pub(super) fn first(corners: &[[DVec3; 2]], cell: &[Vec<DVec3>], seen: &mut Seen) -> f64 {
+    if corners.iter().all(|[p, s]| p == s) {
+        return 0.0;
+    }
+    let of = |viewers: &Vec<DVec3>| {
+        look(corners, viewers, seen);
+        bound2(corners, viewers)
+    };
+    cell.iter().map(of).fold(0.0, f64::max)
+}
+
+/// A closer bound, until it is as wanted or that would take too long.
+pub(super) fn refine(
+    corners: &[[DVec3; 2]],
+    cell: &[Vec<DVec3>],
+    wanted: Wanted,
+    seen: &mut Seen,
+) -> f64 {
+    let mut open = BinaryHeap::new();
+    let mut number = 0;
+    let mut add = |open: &mut BinaryHeap<Part>, corners: Corners, viewers: Vec<DVec3>| {
+        number += 1;
+        open.push(Part {
+            upper2: bound2(&corners, &viewers),
+            corners,
+            viewers,
+            number,
+        });
+    };
+    for viewers in cell {
+        look(corners, viewers, seen);
+        add(&mut open, corners.to_vec(), viewers.clone());
+    }
+    for _ in 0..HALVINGS {
+        let Some(top) = open.peek() else { return 0.0 };
+        if wanted.is_met(seen.tangent2, top.upper2) {
+            break;
+        }
+        let Some(Part {
+            corners, viewers, ..
+        }) = open.pop()
+        else {
+            break;
+        };
+        let (viewer, apart) = (longest(&viewers, |v| *v), longest(&corners, |c| c[0]));
+        if corners.len() > 3 {
+            // From here on as it is mapped: in triangles from the first corner.
+            for i in 2..corners.len() {
+                let three = vec![corners[0], corners[i - 1], corners[i]];
+                look(&three, &viewers, seen);
+                add(&mut open, three, viewers.clone());
+            }
+        } else if viewer.2 > apart.2 {
+            for half in halves(&viewers, viewer, |a, b| (a + b) * 0.5) {
+                look(&corners, &half, seen);
+                add(&mut open, corners.clone(), half);
+            }
+        } else if apart.2 > 0.0 {
+            let middle = |a: [DVec3; 2], b: [DVec3; 2]| [0, 1].map(|k| (a[k] + b[k]) * 0.5);
+            for half in halves(&corners, apart, middle) {
+                look(&half, &viewers, seen);
+                add(&mut open, half, viewers.clone());
+            }
+        } else {
+            // A single point and a single viewpoint: what was seen is all there is.
+            open.push(Part {
+                upper2: seen.tangent2,
+                corners,
+                viewers,
+                number: 0,
+            });
+            break;
+        }
+    }
+    open.peek().map_or(0.0, |top| top.upper2)
+}
+
+/// Measures the corners and their mean from the corners of a simplex of viewpoints and its middle.
+fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
+    let middle = mean(viewers, |v| *v);
+    let mut see = |point, replacement, viewpoint| {
+        let tangent2 = tangent2(point, replacement, viewpoint);
+        if tangent2 > seen.tangent2 {
+            *seen = Seen {
+                tangent2,
+                point,
+                replacement,
+                viewpoint,
+                ..*seen
+            };
+        }
+    };
+    for &viewpoint in viewers.iter().chain([&middle]) {
+        for &[p, s] in corners {
+            see(p, s, viewpoint);
+        }
+    }
+    if corners.len() <= 3 {
+        see(mean(corners, |c| c[0]), mean(corners, |c| c[1]), middle);
+    }
+}
+
+fn mean<T>(of: &[T], at: impl Fn(&T) -> DVec3) -> DVec3 {
+    of.iter().map(at).fold(DVec3::ZERO, |sum, p| sum + p) / of.len() as f64
+}
+
+/// No square of a tangent is larger: for all means of corners, and all viewpoints in the hull of `viewers`.
+fn bound2(corners: &[[DVec3; 2]], viewers: &[DVec3]) -> f64 {
+    let middle = mean(viewers, |v| *v);
+    let mut upper2 = 0.0_f64;
+    for (i, [p, s]) in corners.iter().enumerate() {
+        let (p, d) = (*p - middle, *s - *p);
+        for [q, t] in &corners[i..] {
+            let (q, e) = (*q - middle, *t - *q);
+            let across = (d.cross(q) + e.cross(p)) * 0.5;
+            let steps = (d + e) * 0.5;
+            let along = p.dot(q) + 0.5 * (p.dot(e) + q.dot(d));
+            let slope = p + q + steps;
+            for v in viewers {
+                let v = *v - middle;
+                let numerator = across - steps.cross(v);
+                let denominator = along - slope.dot(v);
+                let numerator2 = numerator.dot(numerator);
+                if denominator > 0.0 {
+                    upper2 = upper2.max(numerator2 / (denominator * denominator));
+                } else {
+                    return f64::INFINITY;
+                }
+            }
+        }
+    }
+    upper2 * (1.0 + MARGIN)
+}
+
+/// The corners that are farthest apart, and the square of their distance.
+fn longest<T>(of: &[T], at: impl Fn(&T) -> DVec3) -> (usize, usize, f64) {
+    let mut found = (0, 0, 0.0);
+    for i in 0..of.len() {
+        for j in i + 1..of.len() {
+            let d = at(&of[j]) - at(&of[i]);
+            if d.dot(d) > found.2 {
+                found = (i, j, d.dot(d));
+            }
+        }
+    }
+    found
+}
+
+/// A simplex in two, halved between two corners.
+fn halves<T: Copy>(
+    of: &[T],
+    (i, j, _): (usize, usize, f64),
+    middle: impl Fn(T, T) -> T,
+) -> [Vec<T>; 2] {
+    let middle = middle(of[i], of[j]);
+    let mut halves = [of.to_vec(), of.to_vec()];
+    halves[0][j] = middle;
+    halves[1][i] = middle;
+    halves
+}
