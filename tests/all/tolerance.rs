@@ -144,7 +144,7 @@ fn plate(n: usize) -> Mesh {
 #[test]
 fn an_open_plate_becomes_two_triangles_and_keeps_its_outline() {
     let mesh = plate(8);
-    let outcome = within(&mesh, share(1e-3));
+    let outcome = within(&mesh, share(1e-6));
     assert_eq!(outcome.mesh.triangles().len(), 2);
     assert!(farthest(&mesh, &outcome.mesh, 8) <= 2e-3);
 }

@@ -40,7 +40,7 @@ fn handles(count: u32) -> Mesh {
             for x in 0..=n {
                 let at = [x, y].map(|c| f64::from(c) / 8.0);
                 // Nothing is a plane, or costs of 0 decide by numbers alone.
-                let lift = 0.02 * (at[0] * 3.0).sin() * (at[1] * 2.0).cos();
+                let lift = 0.01 * (at[0] * (at[0] - 2.0) + at[1] * at[1] - at[0] * at[1]);
                 positions.push(DVec3::new(at[0], at[1], z + lift));
             }
         }
