@@ -287,8 +287,10 @@ impl Trial {
                 return false;
             }
             let known = masks[0] | masks[1] | masks[2];
-            let cut = facets[nearest(facets, known, corners)].cut(corners, reach.length);
-            if let Some(cut) = cut {
+            let nearest = &facets[nearest(facets, known, corners)];
+            if longest2 >= reach.large2
+                && let Some(cut) = nearest.cut(corners, reach.length)
+            {
                 let between = cut.between.map(|p| mask(facets, p, reach));
                 if between.contains(&0) {
                     return false;

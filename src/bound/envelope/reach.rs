@@ -9,6 +9,9 @@ const MARGIN: f64 = 1e-9;
 const ULPS: f64 = 256.0;
 /// Pieces smaller than this share of the bound are not divided any more.
 const FINEST: f64 = 1.0 / 64.0;
+/// Pieces larger than this many bounds are cut at walls: halving them down to the bound would take too long. Smaller ones
+/// are halved, which makes rounder pieces (a twelfth of the time on the bunny at 0.1 % of its diagonal).
+const LARGE: f64 = 64.0;
 
 /// A bound on distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +22,8 @@ pub struct Reach {
     pub squared: f64,
     /// Squared length of the longest side at which pieces are given up.
     pub finest2: f64,
+    /// Squared length of the longest side from which pieces are cut at walls.
+    pub large2: f64,
 }
 
 impl Reach {
@@ -34,6 +39,7 @@ impl Reach {
             length: own,
             squared: own * own,
             finest2: (FINEST * own) * (FINEST * own),
+            large2: (LARGE * own) * (LARGE * own),
         })
     }
 }

@@ -79,7 +79,9 @@ impl Surface {
             if longest2 <= reach.finest2 || queue.len() >= PIECES {
                 return false;
             }
-            if let Some(cut) = facet.cut(piece.corners, reach.length) {
+            if longest2 >= reach.large2
+                && let Some(cut) = facet.cut(piece.corners, reach.length)
+            {
                 let parts = cut.parts(piece.corners, cut.between);
                 queue.extend(parts.map(|corners| Piece {
                     corners,
