@@ -252,7 +252,7 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
         "{}",
         if !found.holds {
             "the claim is broken"
-        } else if found.undecided_area <= 0.0 {
+        } else if found.proven {
             "the claim holds: proven"
         } else {
             "nothing breaks the claim"
@@ -293,7 +293,7 @@ fn tell(found: &DistanceReport) {
             f.point[1],
             f.point[2]
         );
-        if d.undecided_area > 0.0 {
+        if !d.is_proven {
             answer!(
                 "  proven: at most {:.6e}{}; the claim itself is undecided on {:.2e} of the area",
                 d.proven,

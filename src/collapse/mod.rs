@@ -28,7 +28,7 @@ pub mod wedge;
 pub use counters::Counters;
 pub use engine::{End, Engine, Observer, Target};
 pub use flip::{flip, unmirrored};
-pub use fold::{folded_edges, foldedness, ring_unfolded, unfolded};
+pub use fold::{foldedness, is_folded, ring_unfolded, unfolded};
 pub use heap::{Heap, Key};
 pub use history::{Entry, Header, History, Record, Recorder};
 pub use legality::{Refusal, Refusals, Rules, Topology};

@@ -10,6 +10,7 @@ mod digest;
 mod findings;
 pub mod generate;
 mod indexed;
+mod region;
 mod topology;
 mod unite;
 mod weld;

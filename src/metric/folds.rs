@@ -9,10 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    Proximity,
-    surface::{empty, frame_and_diagonal},
-};
+use super::{Proximity, surface::frame_and_diagonal};
 use crate::{
     Progress, Result,
     mesh::{Edges, Mesh},
@@ -24,9 +21,6 @@ pub const FOLD_COSINE: f64 = -0.9;
 
 /// How near the reference's surface counts, as a fraction of its diagonal.
 pub const REACH: f64 = 0.01;
-
-/// Cells along a side of the grid of [`Sides::within`].
-const GRID: f64 = 64.0;
 
 /// Folds and flipped faces of a mesh that its reference does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -45,24 +39,65 @@ pub struct Folds {
 /// [`crate::Error::Input`] where the reference has no triangles; [`crate::Error::Interrupted`].
 pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Result<Folds> {
     let (frame, diagonal) = frame_and_diagonal(reference)?;
-    let reach = REACH * diagonal;
     let (reference, candidate) = (reference.enter_frame(frame), candidate.enter_frame(frame));
     progress.step("folds", 0, 1)?;
-    let creases = folded(&reference).into_iter().map(|[a, b]| [a, b, b]);
-    let creases = Proximity::new(creases.collect());
-    let is_new = |&&[a, b]: &&[DVec3; 2]| {
-        let middle = (a + b) * 0.5;
-        let near = creases.as_ref().map(|c| c.squared_distance(middle, 0).0);
-        near.is_none_or(|squared| squared > reach * reach)
-    };
+    let around = Surroundings::of(&reference, REACH * diagonal);
+    let is_new = |&&ends: &&[DVec3; 2]| around.is_new(ends);
     let folded_edges = folded(&candidate).iter().filter(is_new).count() as u64;
-    let sides = Sides::new(&reference).ok_or_else(|| empty("reference"))?;
     let faces: Vec<[DVec3; 3]> = corners(&candidate).collect();
-    let is_flipped = |face: &&[DVec3; 3]| sides.is_flipped(**face);
+    let is_flipped = |face: &&[DVec3; 3]| around.is_flipped(**face);
     Ok(Folds {
         folded_edges,
         flipped_faces: faces.par_iter().filter(is_flipped).count() as u64,
     })
+}
+
+/// What a reference has near some faces: its folded edges and its sides.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    creases: Option<Proximity>,
+    sides: Option<Sides>,
+    reach: f64,
+}
+
+impl Surroundings {
+    /// Those of a mesh, or of a part of it that has all faces within `reach` (a length) of what will be asked about.
+    /// O(n log n).
+    #[must_use]
+    pub fn of(part: &Mesh, reach: f64) -> Self {
+        let creases = folded(part).into_iter().map(|[a, b]| [a, b, b]);
+        Self {
+            creases: Proximity::new(creases.collect()),
+            sides: Sides::of_part(part, reach),
+            reach,
+        }
+    }
+
+    /// Whether an edge, if it is folded, is so where nothing of the reference is.
+    #[must_use]
+    pub fn is_new(&self, [a, b]: [DVec3; 2]) -> bool {
+        let middle = (a + b) * 0.5;
+        let near = self
+            .creases
+            .as_ref()
+            .map(|c| c.squared_distance(middle, 0).0);
+        near.is_none_or(|squared| squared > self.reach * self.reach)
+    }
+
+    /// Whether some surface within reach looks as a face does, which is then not flipped; any part of the reference can say
+    /// so.
+    #[must_use]
+    pub fn agrees(&self, face: [DVec3; 3]) -> bool {
+        self.sides.as_ref().is_some_and(|sides| sides.agrees(face))
+    }
+
+    /// As [`Sides::is_flipped`]; false where there is no surface.
+    #[must_use]
+    pub fn is_flipped(&self, face: [DVec3; 3]) -> bool {
+        self.sides
+            .as_ref()
+            .is_some_and(|sides| sides.is_flipped(face))
+    }
 }
 
 /// The surface of a mesh, and which way it looks.
@@ -78,46 +113,13 @@ impl Sides {
     #[must_use]
     pub fn new(reference: &Mesh) -> Option<Self> {
         let (low, high) = reference.bounds()?;
-        Some(Self {
-            surface: Proximity::new(corners(reference).collect())?,
-            reach: REACH * length(high - low),
-        })
+        Self::of_part(reference, REACH * length(high - low))
     }
 
-    /// As [`Sides::new`], but only those faces of `reference` that may touch one of the boxes; O(n) for few boxes.
-    #[must_use]
-    pub fn within(reference: &Mesh, boxes: &[[DVec3; 2]]) -> Option<Self> {
-        let (low, high) = reference.bounds()?;
-        let extent = (high - low).max_element();
-        // A grid that says where boxes are: most faces are in none of its cells.
-        let cell = |p: DVec3| {
-            let at = (p - low) * (GRID / extent);
-            at.to_array()
-                .map(|x| (x.max(0.0) as usize).min(GRID as usize - 1))
-        };
-        let side = GRID as usize;
-        let mut near = vec![false; side * side * side];
-        let index = |[x, y, z]: [usize; 3]| (z * side + y) * side + x;
-        for &[from, to] in boxes {
-            let (a, b) = (cell(from), cell(to));
-            for z in a[2]..=b[2] {
-                for y in a[1]..=b[1] {
-                    near[index([a[0], y, z])..=index([b[0], y, z])].fill(true);
-                }
-            }
-        }
-        let touches = |face: &[DVec3; 3]| {
-            let a = cell(face[0].min(face[1]).min(face[2]));
-            let b = cell(face[0].max(face[1]).max(face[2]));
-            (a[2]..=b[2]).any(|z| {
-                (a[1]..=b[1])
-                    .any(|y| near[index([a[0], y, z])..=index([b[0], y, z])].contains(&true))
-            })
-        };
-        Some(Self {
-            surface: Proximity::new(corners(reference).filter(touches).collect())?,
-            reach: REACH * length(high - low),
-        })
+    /// As [`Sides::new`], of a part of a surface that is near for what is within `reach`.
+    fn of_part(part: &Mesh, reach: f64) -> Option<Self> {
+        let surface = Proximity::new(corners(part).collect())?;
+        Some(Self { surface, reach })
     }
 
     /// The surface.
@@ -126,15 +128,22 @@ impl Sides {
         &self.surface
     }
 
+    fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let centroid = ((a + b) + c) / 3.0;
+        let normal = (b - a).cross(c - a);
+        self.surface
+            .looks_along(centroid, normal, self.reach * self.reach)
+    }
+
     /// True where all of the surface around a face looks the other way. Faces without area have no side.
     #[must_use]
     pub fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let normal = (b - a).cross(c - a);
         let centroid = ((a + b) + c) / 3.0;
-        let looks_along = |reach: f64| self.surface.looks_along(centroid, normal, reach * reach);
-        if normal.dot(normal) <= 0.0 || looks_along(self.reach) {
+        if normal.dot(normal) <= 0.0 || self.agrees([a, b, c]) {
             return false;
         }
+        let looks_along = |reach: f64| self.surface.looks_along(centroid, normal, reach * reach);
         // The nearest surface itself must count, whatever is rounded.
         let nearest = 1.000_001 * sqrt(self.surface.squared_distance(centroid, 0).0);
         nearest <= self.reach || !looks_along(nearest)

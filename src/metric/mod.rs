@@ -17,5 +17,5 @@ mod triangle;
 
 pub use triangle::closest_point;
 
-pub use folds::Sides;
+pub use folds::{Sides, Surroundings};
 pub use proximity::Proximity;

@@ -214,6 +214,12 @@ impl Options {
             }
         };
         self.target.triangles(1)?;
+        if self.unfold && !self.method.only_orders() {
+            return Err(Error::Usage(format!(
+                "unfold means nothing to the method `{}`: it judges every change itself; leave it out",
+                self.method.name()
+            )));
+        }
         within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
         match (self.error_rms, &self.method) {

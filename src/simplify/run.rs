@@ -9,7 +9,7 @@ use super::{
     memoryless::Memoryless,
     quadric::QuadricMethod,
     tolerance::{Guarantee, ToleranceMethod, ToleranceOptions},
-    unfold::{Creases, unfold},
+    unfold::unfold,
     view_bounded::{ViewBounded, ViewBoundedOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };
@@ -94,7 +94,6 @@ fn in_pool(
         return run.finish(Stop::TargetAboveInput);
     }
     let target = Target { triangles };
-    let creases = options.unfold.then(|| Creases::of(&run.live));
     let end = match &options.method {
         MethodOptions::Memoryless(own) => {
             let method = Memoryless::new(&run.live, *own);
@@ -113,11 +112,10 @@ fn in_pool(
         MethodOptions::Tolerance(own) => run.within_distance(own, target)?,
         MethodOptions::ViewBounded(own) => run.view_bounded(own, target)?,
     };
-    if let Some(creases) = &creases {
+    if options.unfold {
         unfold(
             &mut run.live,
             mesh,
-            creases,
             options.rules,
             &mut run.recorder,
             progress,

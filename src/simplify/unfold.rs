@@ -8,16 +8,16 @@
 //! counts them.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::{
     Progress, Result,
     collapse::{
-        Changes, Freedom, LiveMesh, Observer, Patch, Rules, Star, folded_edges, foldedness,
-        unmirrored,
+        Changes, Freedom, LiveMesh, Observer, Patch, Rules, Star, foldedness, is_folded, unmirrored,
     },
     mesh::Mesh,
     metric::{
-        Sides,
+        Surroundings,
         folds::{FOLD_COSINE, REACH},
     },
     num::math,
@@ -26,120 +26,102 @@ use crate::{
 /// Opened a little further than what counts as a fold.
 const OPEN_COSINE: f64 = FOLD_COSINE + 0.02;
 
+/// A flipped face has an edge of more than a right angle: no other face is looked at.
+const SHARP_COSINE: f64 = 0.0;
+
+/// One in so many faces of the original is looked at first.
+const FEW: usize = 16;
+
 /// Times that all faults are visited, at most; the dragon at five levels needed up to 15.
 const SWEEPS: u32 = 32;
 
 /// Lengths of moves that are tried, in mean edges at the vertex.
 const STEPS: [f64; 6] = [0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0];
 
-/// The folded edges of an original, near which a fold is none of ours.
-#[derive(Clone, Debug)]
-pub(super) struct Creases {
-    edges: Vec<[DVec3; 2]>,
-    /// Square of how far they reach.
-    reach2: f64,
-}
+/// What is near the faces that may have to be repaired.
+struct Faults(Surroundings);
 
-impl Creases {
-    /// Those of a mesh; O(edges).
-    pub(super) fn of(live: &LiveMesh) -> Self {
-        let mut bounds: Option<[DVec3; 2]> = None;
-        for &p in live.positions() {
-            let [low, high] = bounds.unwrap_or([p; 2]);
-            bounds = Some([low.min(p), high.max(p)]);
-        }
-        let [low, high] = bounds.unwrap_or_default();
-        let folded = folded_edges(live, FOLD_COSINE).into_iter();
-        let ends = folded.filter_map(|e| Some(live.edge(e)?.map(|v| live.position(v))));
-        let reach = REACH * math::length(high - low);
-        Self {
-            edges: ends.collect(),
-            reach2: reach * reach,
-        }
-    }
-
-    /// The folded edges of a mesh that are near none of these.
-    fn folds(&self, live: &LiveMesh) -> Vec<u32> {
-        let mut folded = folded_edges(live, FOLD_COSINE);
-        folded.retain(|&e| {
-            live.edge(e).is_some_and(|ends| {
-                let [a, b] = ends.map(|v| live.position(v));
-                let far = |&crease| squared_distance((a + b) * 0.5, crease) > self.reach2;
-                self.edges.iter().all(far)
-            })
+impl Faults {
+    /// What is near the middles of `sharp` edges and of the faces at them: enough to find faults.
+    /// Of every `stride`-th face of the original.
+    fn at_faces(live: &LiveMesh, original: &Mesh, sharp: &[u32], stride: usize) -> Self {
+        let faces = faces_at(live, sharp).into_iter();
+        let boxes = faces.filter_map(|face| {
+            let [a, b, c] = live.points(face)?;
+            Some([((a + b) + c) / 3.0; 2])
         });
-        folded
+        let edges = sharp.iter().filter_map(|&edge| {
+            let [a, b] = live.edge(edge)?.map(|v| live.position(v));
+            Some([(a + b) * 0.5; 2])
+        });
+        Self::within(live, original, boxes.chain(edges), stride)
     }
-}
 
-/// What has to be repaired, and around which vertices.
-struct Faults<'a> {
-    creases: &'a Creases,
-    /// The surface around whatever may look the wrong way.
-    sides: Option<Sides>,
-}
+    /// What is near the faces at some vertices, wherever one of those may go: enough to repair them.
+    fn at_vertices(live: &LiveMesh, original: &Mesh, vertices: &[Vec<u32>]) -> Self {
+        let boxes = vertices.iter().flatten().map(|&v| {
+            let faces = live.triangles_at(v).filter_map(|f| live.points(f));
+            let start = [live.position(v); 2];
+            let [low, high] = faces
+                .flatten()
+                .fold(start, |[l, h], p| [l.min(p), h.max(p)]);
+            let farthest = DVec3::splat(math::length(high - low));
+            [low - farthest, high + farthest]
+        });
+        Self::within(live, original, boxes, 1)
+    }
 
-impl<'a> Faults<'a> {
-    fn new(live: &LiveMesh, original: &Mesh, creases: &'a Creases) -> Self {
-        let boxes: Vec<[DVec3; 2]> = suspects(live)
-            .into_iter()
-            .filter_map(|face| {
-                let corners = live.points(face)?;
-                let low = corners[0].min(corners[1]).min(corners[2]);
-                let high = corners[0].max(corners[1]).max(corners[2]);
-                // As far as a vertex may go, and the surface from there.
-                let margin = DVec3::splat(math::length(high - low) + math::sqrt(creases.reach2));
-                Some([low - margin, high + margin])
-            })
-            .collect();
-        let sides = if boxes.is_empty() {
-            None
-        } else {
-            Sides::within(&original.enter_frame(live.frame()), &boxes)
+    fn within(
+        live: &LiveMesh,
+        original: &Mesh,
+        boxes: impl Iterator<Item = [DVec3; 2]>,
+        stride: usize,
+    ) -> Self {
+        let frame = live.frame();
+        let bounds = original.bounds().unwrap_or_default();
+        let reach = REACH * math::length(frame.enter(bounds.1) - frame.enter(bounds.0));
+        let margin = DVec3::splat(reach);
+        let boxes = boxes.map(|[low, high]| [low - margin, high + margin].map(|p| frame.leave(p)));
+        let part = original.near(&boxes.collect::<Vec<_>>(), stride);
+        Self(Surroundings::of(&part.enter_frame(frame), reach))
+    }
+
+    /// Of `sharp` edges and the faces at them, the vertices of every folded edge's faces and of every flipped face.
+    fn find(&self, live: &LiveMesh, sharp: &[u32]) -> Vec<Vec<u32>> {
+        let is_new = |&e: &u32| {
+            let ends = live.edge(e).map(|ends| ends.map(|v| live.position(v)));
+            is_folded(live, e, FOLD_COSINE) && ends.is_some_and(|ends| self.0.is_new(ends))
         };
-        Self { creases, sides }
-    }
-
-    fn is_flipped(&self, face: [DVec3; 3]) -> bool {
-        self.sides.as_ref().is_some_and(|s| s.is_flipped(face))
-    }
-
-    /// The vertices of every folded edge's faces and of every flipped face.
-    fn find(&self, live: &LiveMesh) -> Vec<Vec<u32>> {
-        let around = |edge: u32| {
-            let [a, b] = live.edge(edge)?;
-            let faces = live.triangles_at(a).filter_map(|f| live.triangle(f));
-            let mut around: Vec<u32> = faces.filter(|c| c.contains(&b)).flatten().collect();
-            around.sort_unstable();
-            around.dedup();
-            Some(around)
+        let corners = |faces: Vec<u32>| {
+            let corners = faces.into_iter().filter_map(|f| live.triangle(f));
+            let mut corners: Vec<u32> = corners.flatten().collect();
+            corners.sort_unstable();
+            corners.dedup();
+            corners
         };
-        let folds = self.creases.folds(live).into_iter().filter_map(around);
-        let is_flipped = |&f: &u32| live.points(f).is_some_and(|face| self.is_flipped(face));
-        let flipped = suspects(live).into_iter().filter(is_flipped);
-        let corners = flipped.filter_map(|f| Some(live.triangle(f)?.to_vec()));
-        folds.chain(corners).collect()
+        let folds = sharp.iter().copied().filter(is_new);
+        let folds = folds.map(|edge| corners(faces_at(live, &[edge])));
+        let is_flipped = |&f: &u32| live.points(f).is_some_and(|face| self.0.is_flipped(face));
+        let flipped = faces_at(live, sharp).into_iter().filter(is_flipped);
+        folds
+            .chain(flipped.map(|face| corners(vec![face])))
+            .collect()
     }
 
-    /// How wrong the faces of a patch are: how far their edges are folded, and how many of them are flipped.
-    fn weigh(&self, live: &LiveMesh, patch: &Patch) -> [f64; 2] {
-        let [mut before, mut after] = foldedness(live, patch, OPEN_COSINE);
-        for face in &patch.removed {
-            before += f64::from(self.is_flipped(patch.before(live, face)));
-        }
-        for face in &patch.added {
-            after += f64::from(self.is_flipped(patch.after(live, face)));
-        }
-        [before, after]
+    /// How many of some faces are flipped.
+    fn flipped(&self, faces: impl Iterator<Item = [DVec3; 3]>) -> f64 {
+        faces.filter(|&face| self.0.is_flipped(face)).count() as f64
     }
 }
 
-/// The faces at edges of more than a right angle, ascending: no other face is taken to be flipped.
-fn suspects(live: &LiveMesh) -> Vec<u32> {
-    let mut faces: Vec<u32> = folded_edges(live, 0.0)
-        .into_iter()
-        .filter_map(|edge| live.edge(edge))
+/// The faces at edges, ascending.
+fn faces_at(live: &LiveMesh, edges: &[u32]) -> Vec<u32> {
+    let mut faces: Vec<u32> = edges
+        .iter()
+        .filter_map(|&edge| live.edge(edge))
         .flat_map(|[a, b]| {
+            let fewer = live.valence(a) <= live.valence(b);
+            let [a, b] = if fewer { [a, b] } else { [b, a] };
             let at_edge = move |f: &u32| live.triangle(*f).is_some_and(|c| c.contains(&b));
             live.triangles_at(a).filter(at_edge)
         })
@@ -149,24 +131,52 @@ fn suspects(live: &LiveMesh) -> Vec<u32> {
     faces
 }
 
-/// Moves vertices at folds that are not near the creases of the original, and at faces that look where none of the
+/// The edges at which a face can be flipped, of all there are, or of those at some vertices; ascending.
+fn sharp_edges(live: &LiveMesh, vertices: Option<&[Vec<u32>]>) -> Vec<u32> {
+    let is_sharp = |&edge: &u32| is_folded(live, edge, SHARP_COSINE);
+    let Some(vertices) = vertices else {
+        return (0..live.edge_ids())
+            .into_par_iter()
+            .filter(is_sharp)
+            .collect();
+    };
+    let at = |&v: &u32| live.edges_at(v);
+    let mut edges: Vec<u32> = vertices.iter().flatten().flat_map(at).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges.retain(is_sharp);
+    edges
+}
+
+/// Moves vertices at folds that are not near those of the original, and at faces that look where none of the
 /// original does.
 ///
-/// O(edges), and O(creases) for every fold; O(n) for the original where there are edges of more than a right angle.
+/// O(edges), and O(n) for the original; the rest grows with the faults.
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`].
 pub(super) fn unfold(
     live: &mut LiveMesh,
     original: &Mesh,
-    creases: &Creases,
     rules: Rules,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
 ) -> Result<()> {
-    let faults = Faults::new(live, original, creases);
+    progress.step("unfold", 0, u64::from(SWEEPS))?;
+    let mut sharp = sharp_edges(live, None);
+    // Nearly all of them look where one of a few faces of the original does: no others are needed to see that.
+    let some = Faults::at_faces(live, original, &sharp, FEW);
+    sharp.retain(|&edge| {
+        let mut faces = faces_at(live, &[edge]).into_iter();
+        let differs = |f| live.points(f).is_some_and(|face| !some.0.agrees(face));
+        is_folded(live, edge, FOLD_COSINE) || faces.any(differs)
+    });
+    let mut left = Faults::at_faces(live, original, &sharp, 1).find(live, &sharp);
+    if left.is_empty() {
+        return Ok(());
+    }
+    let faults = Faults::at_vertices(live, original, &left);
     let mut search = Search::default();
-    let mut left = faults.find(live);
     for sweep in 0..SWEEPS {
         if left.is_empty() {
             break;
@@ -186,7 +196,9 @@ pub(super) fn unfold(
                 observer.committed(live, &search.patch);
             }
         }
-        left = faults.find(live);
+        // A move changes nothing but what is at the vertices of a fault.
+        let sharp = sharp_edges(live, Some(&left));
+        left = faults.find(live, &sharp);
     }
     Ok(())
 }
@@ -205,7 +217,7 @@ impl Search {
         &mut self,
         live: &LiveMesh,
         vertex: u32,
-        faults: &Faults<'_>,
+        faults: &Faults,
         rules: Rules,
     ) -> Option<(f64, DVec3)> {
         let Self { star, patch, .. } = self;
@@ -222,6 +234,8 @@ impl Search {
             math::length((b - a).cross(c - a))
         });
         let area: f64 = areas.sum();
+        let faces = star.faces.iter();
+        let flipped = faults.flipped(faces.map(|f| f.corners.map(|v| live.position(v))));
         let mut best: Option<(f64, DVec3)> = None;
         for step in STEPS {
             for direction in &directions {
@@ -233,12 +247,18 @@ impl Search {
                 if unmirrored(live, patch).is_err() {
                     continue;
                 }
-                let [before, after] = faults.weigh(live, patch);
+                let [before, after] = foldedness(live, patch, OPEN_COSINE);
                 // The second term keeps tiny moves of tiny faces from counting as free.
                 let price = (area * step + 0.05 * edge * edge) * edge;
-                let gain = (before - after) / price;
-                if gain > 0.0 && best.is_none_or(|(most, _)| gain > most) {
-                    best = Some((gain, to));
+                let gain = |after: f64| (before + flipped - after) / price;
+                let is_better = |gain: f64| gain > 0.0 && best.is_none_or(|(most, _)| gain > most);
+                // Asking for the sides is slow.
+                if is_better(gain(after)) {
+                    let faces = patch.added.iter().map(|f| patch.after(live, f));
+                    let gain = gain(after + faults.flipped(faces));
+                    if is_better(gain) {
+                        best = Some((gain, to));
+                    }
                 }
             }
         }
@@ -256,11 +276,4 @@ fn around() -> impl Iterator<Item = DVec3> {
         )
     };
     (0..27).filter_map(move |i| math::unit(at(i)))
-}
-
-fn squared_distance(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
-    let (d, q) = (b - a, p - a);
-    let t = (q.dot(d) / d.dot(d)).clamp(0.0, 1.0);
-    let off = if t.is_finite() { q - d * t } else { q };
-    off.dot(off)
 }

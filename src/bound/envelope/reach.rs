@@ -4,9 +4,9 @@ use glam::DVec3;
 
 /// Relative part of a bound that is given up, far above the rounding of a distance.
 const MARGIN: f64 = 1e-9;
-/// Units in the last place of the largest coordinate that are given up: every division of a piece moves its border by no
-/// more than one, and pieces are divided some tens of times.
-const ULPS: f64 = 256.0;
+/// Units in the last place of the largest coordinate that are given up: a halving of a piece moves its border by no more
+/// than one, a cut by no more than four, and pieces are divided some tens of times.
+const ULPS: f64 = 1024.0;
 /// Pieces smaller than this share of the bound are not divided any more.
 const FINEST: f64 = 1.0 / 64.0;
 /// Pieces larger than this many bounds are cut at walls: halving them down to the bound would take too long. Smaller ones

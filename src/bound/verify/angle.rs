@@ -92,6 +92,8 @@ pub struct AngleReport {
     pub part_of_cell: bool,
     /// Nothing was found that breaks the claim.
     pub holds: bool,
+    /// The claim holds for every point, those of faces without area too, and every viewpoint of the cell.
+    pub proven: bool,
 }
 
 /// Holds a simplified mesh to a claimed angle (degrees) for the viewers in `cell`, with about `samples` points spread over
@@ -145,6 +147,18 @@ pub fn angles(
         limit2: tangent * tangent,
         record,
     };
+    // Squares of squares must be numbers.
+    let mut all = check
+        .targets
+        .iter()
+        .flatten()
+        .chain(&check.viewpoints.corners);
+    if !all.all(|p| p.abs().max_element() <= LARGEST) {
+        return Err(Error::input(
+            "-",
+            "the simplified mesh or the cell is 10^60 times as large or as far away as the original; check the units of all",
+        ));
+    }
     let mut found = Found::default();
     let mapped = match record {
         Some(record) => Some(check.mapped(record, &mut found, progress)?),
@@ -181,8 +195,14 @@ pub fn angles(
             None => check.viewpoints.end.is_some(),
         },
         holds: within && gap.is_none(),
+        proven: within
+            && gap.is_none()
+            && mapped.is_some_and(|m| !m.partial && m.at_most2 <= check.limit2),
     })
 }
+
+/// Largest coordinate of a mesh or cell, in sizes of the original.
+const LARGEST: f64 = 1e60;
 
 pub(super) struct Check<'a> {
     pub(super) originals: Vec<[DVec3; 3]>,

@@ -72,6 +72,8 @@ pub struct Direction {
     pub undecided_area: f64,
     /// The claim holds as far as anybody knows: no point breaks it.
     pub holds: bool,
+    /// The claim holds for every point, those of faces without area too.
+    pub is_proven: bool,
 }
 
 /// What the check found.
@@ -124,7 +126,7 @@ pub fn distance(
         Claim::Absolute(length) => frame.enter_length(length),
     };
     let surfaces = [reference, simplified].map(|mesh| Surface::new(mesh, frame));
-    if !surfaces[1].is_within(1e60) {
+    if !surfaces.iter().all(|s| s.is_within(1e60)) {
         return Err(Error::input(
             "-",
             "the simplified mesh is 10^60 times as large as the reference; check the units of both",
@@ -148,7 +150,7 @@ pub fn distance(
         claimed: frame.leave_length(claim, 1),
         diagonal: frame.leave_length(diagonal, 1),
         holds: directions.iter().all(|d| d.holds),
-        proven: directions.iter().all(|d| d.undecided_area <= 0.0),
+        proven: directions.iter().all(|d| d.is_proven),
         directions,
     })
 }
@@ -242,6 +244,7 @@ impl Check<'_> {
             proven: frame.leave_length(proven.max(farthest), 1),
             undecided_area: share.min(1.0),
             holds: farthest <= self.most,
+            is_proven: proven.max(farthest) <= self.most,
         })
     }
 

@@ -11,6 +11,8 @@ use crate::{Error, Result, mesh::Mesh};
 
 const MAGIC: &[u8] = b"LODMCORR";
 const FORMAT: u32 = 1;
+/// Corners of a piece: twice what is ever written.
+const MOST_CORNERS: u32 = 4096;
 /// Magic, format, two digests, two counts, number of pieces.
 const HEADER: usize = 8 + 4 + 64 + 8 + 8;
 /// The weight 1.
@@ -112,8 +114,12 @@ impl Record {
                 self.targets
             )));
         }
-        if corners < 3 || self.corners.len() + corners as usize > u32::MAX as usize {
-            return Err(bad(&format!("has {corners} corners; expected at least 3")));
+        if !(3..=MOST_CORNERS).contains(&corners)
+            || self.corners.len() + corners as usize > u32::MAX as usize
+        {
+            return Err(bad(&format!(
+                "has {corners} corners; expected 3 to {MOST_CORNERS}"
+            )));
         }
         self.pieces.push([target, self.corners.len() as u32]);
         for _ in 0..corners {

@@ -11,19 +11,22 @@ use crate::{
 /// distances together: displacements of some size are seen larger from there than from anywhere beyond.
 const REACH: [f64; 2] = [4.0, 3.0];
 
-/// The square of the tangent of the angle between `p` and `s` seen from `v`; infinite from a right angle on.
+/// The square of the tangent of the angle between `p` and `s` seen from `v`; infinite from a right angle on, and where
+/// numbers are too large or small to tell.
 #[inline]
 pub(super) fn tangent2(p: DVec3, s: DVec3, v: DVec3) -> f64 {
     let (r, d) = (p - v, s - p);
     let across = r.cross(d);
     let across = across.dot(across);
     let along = r.dot(s - v);
-    if along > 0.0 {
-        across / (along * along)
-    } else if d.dot(d) > 0.0 {
-        f64::INFINITY
+    if d.dot(d) == 0.0 {
+        return 0.0;
+    }
+    let square = across / (along * along);
+    if along > 0.0 && !square.is_nan() {
+        square
     } else {
-        0.0
+        f64::INFINITY
     }
 }
 

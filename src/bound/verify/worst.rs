@@ -202,9 +202,10 @@ fn bound2(corners: &[[DVec3; 2]], viewers: &[DVec3]) -> f64 {
                 let v = *v - middle;
                 let numerator = across - steps.cross(v);
                 let denominator = along - slope.dot(v);
-                let numerator2 = numerator.dot(numerator);
-                if denominator > 0.0 {
-                    upper2 = upper2.max(numerator2 / (denominator * denominator));
+                let square = numerator.dot(numerator) / (denominator * denominator);
+                // What is no number is no bound either.
+                if denominator > 0.0 && !square.is_nan() {
+                    upper2 = upper2.max(square);
                 } else {
                     return f64::INFINITY;
                 }

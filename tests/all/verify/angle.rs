@@ -9,6 +9,7 @@ use lodmark::{
         verify::{AngleReport, Gap, Property, Record, angles},
     },
     mesh::{Mesh, canonical, generate},
+    num::Precision,
 };
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
@@ -431,4 +432,47 @@ fn the_command_names_the_place_where_an_angle_is_too_large() {
             "90",
         ],
     );
+}
+
+#[test]
+fn a_face_without_area_is_proven_by_having_none() {
+    // The second triangle lies on a line, and viewers stand between it and what stands for it.
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let corners = |by: f64| {
+        let line = [0.0, 1.0, 2.0].map(|x| p(x + by * (1.0 + 0.37 * x), 0.0, 0.0));
+        let face = [p(0.0, 0.0, 3.0), p(1.0, 0.0, 3.0), p(0.0, 1.0, 3.0)];
+        [face, line].concat()
+    };
+    let mesh = |by| Mesh::from_triangles(corners(by), vec![[0, 1, 2], [3, 4, 5]]).expect("valid");
+    let cell = ViewCell::segment([p(0.2, 0.0, 0.0), p(1.7, 0.0, 0.0)]).expect("a cell");
+    let found = check(&mesh(0.0), &mesh(1e-9), &cell, 1.0);
+    assert!(!found.proven, "{found:?}");
+    assert!(check(&mesh(0.0), &mesh(0.0), &cell, 0.0).proven);
+}
+
+#[test]
+fn a_mesh_whose_squares_are_no_numbers_is_held_to_a_claim() {
+    let mut parts = shapes::torus(6, 5, 1).into_parts();
+    parts.precision = Precision::F64;
+    let near = Mesh::new(parts).expect("valid");
+    let moved = |by: DVec3| {
+        let mut parts = near.clone().into_parts();
+        parts.positions[3] += by;
+        Mesh::new(parts).expect("valid")
+    };
+    let cell = ViewCell::point(DVec3::new(0.0, 0.0, 9.0)).expect("a cell");
+    for far in [1e61, 1e160, 1e300] {
+        let low = moved(DVec3::splat(far));
+        let record = read(&identity(&near, &low));
+        for record in [Some(&record), None] {
+            let refused = angles(&near, &low, &cell, 1.0, record, 100, &Silent);
+            assert_eq!(refused.expect_err("too far").exit_code(), 3);
+        }
+        let there = ViewCell::point(DVec3::splat(far)).expect("a cell");
+        let refused = angles(&near, &near, &there, 1.0, None, 100, &Silent);
+        assert_eq!(refused.expect_err("too far").exit_code(), 3);
+    }
+    let low = moved(DVec3::splat(1e50));
+    let found = check(&near, &low, &cell, 1.0);
+    assert!(!found.proven && !found.holds, "{found:?}");
 }

@@ -302,3 +302,31 @@ fn the_command_ends_with_the_code_of_its_verdict() {
         &["verify", "ref.ply", "none.ply", "--error", "0.1"],
     );
 }
+
+#[test]
+fn a_face_without_area_is_near_by_having_none() {
+    let p = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let mut corners = vec![
+        p(-1.0, -1.0),
+        p(-1.0, 1.0),
+        p(-3.0, 0.0),
+        p(1.0, -1.0),
+        p(1.0, 1.0),
+        p(3.0, 0.0),
+    ];
+    let mut faces = vec![[0, 1, 2], [3, 4, 5]];
+    let reference = Mesh::from_triangles(corners.clone(), faces.clone()).expect("valid");
+    // A line across the gap, whose middle is 1 from both sides.
+    corners.extend([
+        p(-0.712_345_612_345, 0.0),
+        p(0.587_654_398_765, 0.0),
+        p(0.1234, 0.0),
+    ]);
+    faces.push([6, 7, 8]);
+    let low = Mesh::from_triangles(corners, faces).expect("valid");
+    let claim = Claim::Absolute(0.999_94);
+    let found = distance(&reference, &low, claim, true, 9, &Silent).expect("both have triangles");
+    assert!(!found.proven, "{found:?}");
+    let found = distance(&reference, &low, Claim::Absolute(1.01), true, 9, &Silent);
+    assert!(found.expect("both have triangles").proven);
+}

@@ -1,0 +1,102 @@
+//! The part of a mesh near some boxes.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Mesh;
+
+/// Cells along a side of the grid.
+const GRID: usize = 128;
+
+impl Mesh {
+    /// The faces that may touch one of the boxes (least and largest corner), of every `stride`-th one (0 is as 1), in their
+    /// order, without attributes and with the vertices they need; a grid of 128 cells a side decides, so faces nearby may come along. O(n), and for every box
+    /// O(its cells).
+    #[must_use]
+    pub fn near(&self, boxes: &[[DVec3; 2]], stride: usize) -> Self {
+        let Some((low, high)) = self.bounds() else {
+            return Self::default();
+        };
+        let extent = (high - low).max_element();
+        let cell = |p: DVec3| {
+            let at = (p - low) * (GRID as f64 / extent);
+            at.to_array().map(|x| (x.max(0.0) as usize).min(GRID - 1))
+        };
+        let row = |a: [usize; 3], b: [usize; 3], y: usize, z: usize| {
+            let start = (z * GRID + y) * GRID;
+            start + a[0]..start + b[0] + 1
+        };
+        let mut near = vec![false; GRID * GRID * GRID];
+        for &[from, to] in boxes {
+            let (a, b) = (cell(from), cell(from.max(to)));
+            for z in a[2]..=b[2] {
+                for y in a[1]..=b[1] {
+                    near[row(a, b, y, z)].fill(true);
+                }
+            }
+        }
+        let touches = |face: &&[u32; 3]| {
+            let [p, q, r] = face.map(|v| self.positions()[v as usize]);
+            let (a, b) = (cell(p.min(q).min(r)), cell(p.max(q).max(r)));
+            (a[2]..=b[2]).any(|z| (a[1]..=b[1]).any(|y| near[row(a, b, y, z)].contains(&true)))
+        };
+        let faces: Vec<[u32; 3]> = self
+            .triangles()
+            .par_iter()
+            .step_by(stride.max(1))
+            .filter(touches)
+            .copied()
+            .collect();
+        let mut vertices = faces.concat();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let renamed = |v: u32| vertices.partition_point(|&w| w < v) as u32;
+        let faces = faces.into_iter().map(|t| t.map(renamed)).collect();
+        let positions = vertices.iter().map(|&v| self.positions()[v as usize]);
+        Self::from_triangles(positions.collect(), faces).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::generate;
+
+    #[test]
+    fn a_face_that_touches_a_box_is_left_out_or_all_are_taken() {
+        let mesh = generate::interlocking_tori(32, 16);
+        let bounds = mesh.bounds().expect("not empty");
+        let at = |x: f64, y: f64, z: f64| bounds.0 + (bounds.1 - bounds.0) * DVec3::new(x, y, z);
+        for boxes in [
+            vec![[at(0.1, 0.2, 0.3), at(0.3, 0.4, 0.5)]],
+            vec![
+                [at(-1.0, -1.0, -1.0), at(0.1, 2.0, 2.0)],
+                [at(0.9, 0.5, 0.5), at(0.95, 0.6, 0.6)],
+            ],
+        ] {
+            let part = mesh.near(&boxes, 1);
+            let corners = |m: &Mesh| {
+                (0..m.triangles().len())
+                    .map(|t| m.corners(t))
+                    .collect::<Vec<_>>()
+            };
+            let (all, some) = (corners(&mesh), corners(&part));
+            assert!(some.len() > 4 && some.len() < all.len(), "{}", some.len());
+            for face in all {
+                let low = face[0].min(face[1]).min(face[2]);
+                let high = face[0].max(face[1]).max(face[2]);
+                let touches = |b: &[DVec3; 2]| low.cmple(b[1]).all() && high.cmpge(b[0]).all();
+                assert!(!boxes.iter().any(touches) || some.contains(&face));
+            }
+        }
+        assert!(mesh.near(&[], 1).triangles().is_empty());
+        assert!(
+            Mesh::default()
+                .near(&[[DVec3::ZERO, DVec3::ONE]], 1)
+                .triangles()
+                .is_empty()
+        );
+        let far = [at(8.0, 8.0, 8.0), at(9.0, 9.0, 9.0)];
+        assert!(mesh.near(&[far], 1).triangles().len() < 600);
+    }
+}
