@@ -1,7 +1,7 @@
 //! Going back and forth in a recorded run: coarser by its records, finer by an undo log.
 //!
 //! A level is the mesh right after a collapse and after the moves and flips recorded before the next one. A run that
-//! polishes does so after its last collapse: its own level is the polished mesh, finer ones are as the collapses left
+//! polishes or unfolds does so after its last collapse: its own level is the result, finer ones are as the collapses left
 //! them.
 
 use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Record, Ring};
@@ -76,8 +76,8 @@ impl<'a> Replay<'a> {
         self.undo.len()
     }
 
-    /// Goes to a level: the first with no more than `triangles`, or the last there is. Without polishing it is what a
-    /// direct run to `triangles` would have ended with. Time: proportional to the records in between.
+    /// Goes to a level: the first with no more than `triangles`, or the last there is. Without polishing and unfolding it
+    /// is what a direct run to `triangles` would have ended with. Time: proportional to the records in between.
     ///
     /// # Errors
     /// [`Error::Input`] where a record does not fit the mesh.
