@@ -73,11 +73,15 @@ struct Thinned {
     cost: f64,
 }
 
-/// A tile after its collapses.
+/// What is left of a tile after its collapses, in ids of the whole. Its adjacency is gone: all tiles of a round wait
+/// for each other, and those of a million triangles would take more memory than the mesh.
 struct Tile<M> {
     vertices: Vec<u32>,
+    positions: Vec<DVec3>,
     faces: Vec<u32>,
-    live: LiveMesh,
+    /// The corners of `faces`, [`NONE`] where they are gone.
+    corners: Vec<[u32; 3]>,
+    removed: usize,
     method: M,
     collapses: Vec<Thinned>,
     counters: Counters,
@@ -124,10 +128,7 @@ pub fn thin<M: Divisible>(
         for tile in &tiles {
             counters.add(&tile.counters);
         }
-        let removed: usize = tiles
-            .iter()
-            .map(|t| t.faces.len() - t.live.triangle_count())
-            .sum();
+        let removed: usize = tiles.iter().map(|t| t.removed).sum();
         let mut order: Vec<Thinned> = Vec::new();
         for tile in &tiles {
             order.extend_from_slice(&tile.collapses);
@@ -141,13 +142,10 @@ pub fn thin<M: Divisible>(
         }
         let mut faces = std::mem::take(&mut live.faces);
         for tile in tiles {
-            for (&id, local) in tile.faces.iter().zip(&tile.live.faces) {
-                faces[id as usize] = local.map(|v| match v {
-                    NONE => NONE,
-                    v => tile.vertices[v as usize],
-                });
+            for (&id, &corners) in tile.faces.iter().zip(&tile.corners) {
+                faces[id as usize] = corners;
             }
-            for (&v, &p) in tile.vertices.iter().zip(&tile.live.positions) {
+            for (&v, &p) in tile.vertices.iter().zip(&tile.positions) {
                 live.positions[v as usize] = p;
             }
             method.unite(tile.method, &tile.vertices);
@@ -338,11 +336,19 @@ fn collapse_tile<M: Divisible>(
             }
         })
         .collect();
+    let corners = live.faces.iter().map(|corners| {
+        corners.map(|v| match v {
+            NONE => NONE,
+            v => vertices[v as usize],
+        })
+    });
     Ok(Tile {
         collapses,
+        removed: faces.len() - live.triangle_count(),
+        corners: corners.collect(),
+        positions: live.positions,
         vertices,
         faces,
-        live,
         method: method.own,
         counters,
     })

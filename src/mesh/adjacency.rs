@@ -1,5 +1,7 @@
 //! Adjacency without a manifold assumption: triangles around a vertex, triangles at an edge.
 
+use rayon::prelude::*;
+
 use super::Mesh;
 
 /// The triangles at every vertex, in ascending order; a triangle that repeats a vertex is listed once there.
@@ -78,7 +80,7 @@ impl Edges {
                 }
             }
         }
-        sides.sort_unstable();
+        sides.par_sort_unstable();
         sides.dedup();
         let mut edges: Vec<Edge> = Vec::with_capacity(sides.len() / 2);
         let mut starts = Vec::with_capacity(sides.len() / 2 + 1);

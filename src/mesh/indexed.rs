@@ -1,9 +1,13 @@
 //! The indexed triangle mesh.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Attributes;
 use crate::num::{Frame, Precision};
+
+/// Triangles whose bounds one task finds.
+const BOUNDS_CHUNK: usize = 1 << 15;
 
 /// Materials: a name per triangle, and the files that define them. Empty where the file has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -202,13 +206,16 @@ impl Mesh {
     /// Smallest and largest corner of the bounding box of the vertices that triangles use; `None` without triangles.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let mut corners = self
-            .triangles
-            .iter()
-            .flatten()
-            .map(|&v| self.positions[v as usize]);
-        let first = corners.next()?;
-        Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+        let of_some = |triangles: &[[u32; 3]]| {
+            let mut corners = triangles
+                .iter()
+                .flatten()
+                .map(|&v| self.positions[v as usize]);
+            let first = corners.next()?;
+            Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+        };
+        let boxes = self.triangles.par_chunks(BOUNDS_CHUNK).filter_map(of_some);
+        boxes.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     /// The same mesh with positions in units of `frame`: an exact scaling, undone by [`Mesh::leave_frame`].

@@ -9,9 +9,9 @@ use super::Mesh;
 const GRID: usize = 128;
 
 impl Mesh {
-    /// The faces that may touch one of the boxes (least and largest corner), of every `stride`-th one (0 is as 1), in their
-    /// order, without attributes and with the vertices they need; a grid of 128 cells a side decides, so faces nearby may come along. O(n), and for every box
-    /// O(its cells).
+    /// The faces that may touch one of the boxes (least and largest corner), of every `stride`-th one (0 is as 1), in
+    /// their order, without attributes and with the vertices they need; a grid of 128 cells a side decides, so faces
+    /// nearby may come along. O(n), and for every box O(its cells).
     #[must_use]
     pub fn near(&self, boxes: &[[DVec3; 2]], stride: usize) -> Self {
         let Some((low, high)) = self.bounds() else {
@@ -47,13 +47,20 @@ impl Mesh {
             .filter(touches)
             .copied()
             .collect();
-        let mut vertices = faces.concat();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let renamed = |v: u32| vertices.partition_point(|&w| w < v) as u32;
+        let mut renamed = vec![0_u32; self.positions().len()];
+        for &v in faces.iter().flatten() {
+            renamed[v as usize] = 1;
+        }
+        let mut positions = Vec::new();
+        for (&p, name) in self.positions().iter().zip(&mut renamed) {
+            if *name > 0 {
+                *name = positions.len() as u32;
+                positions.push(p);
+            }
+        }
+        let renamed = |v: u32| renamed[v as usize];
         let faces = faces.into_iter().map(|t| t.map(renamed)).collect();
-        let positions = vertices.iter().map(|&v| self.positions()[v as usize]);
-        Self::from_triangles(positions.collect(), faces).unwrap_or_default()
+        Self::from_triangles(positions, faces).unwrap_or_default()
     }
 }
 

@@ -84,13 +84,6 @@ impl Surroundings {
         near.is_none_or(|squared| squared > self.reach * self.reach)
     }
 
-    /// Whether some surface within reach looks as a face does, which is then not flipped; any part of the reference can say
-    /// so.
-    #[must_use]
-    pub fn agrees(&self, face: [DVec3; 3]) -> bool {
-        self.sides.as_ref().is_some_and(|sides| sides.agrees(face))
-    }
-
     /// As [`Sides::is_flipped`]; false where there is no surface.
     #[must_use]
     pub fn is_flipped(&self, face: [DVec3; 3]) -> bool {
@@ -117,7 +110,7 @@ impl Sides {
     }
 
     /// As [`Sides::new`], of a part of a surface that is near for what is within `reach`.
-    fn of_part(part: &Mesh, reach: f64) -> Option<Self> {
+    pub(crate) fn of_part(part: &Mesh, reach: f64) -> Option<Self> {
         let surface = Proximity::new(corners(part).collect())?;
         Some(Self { surface, reach })
     }
@@ -128,7 +121,10 @@ impl Sides {
         &self.surface
     }
 
-    fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
+    /// Whether some surface within reach looks as a face does, which is then not flipped; any part of the reference can
+    /// say so.
+    #[must_use]
+    pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let centroid = ((a + b) + c) / 3.0;
         let normal = (b - a).cross(c - a);
         self.surface

@@ -17,7 +17,7 @@ use crate::{
     },
     mesh::Mesh,
     metric::{
-        Surroundings,
+        Sides, Surroundings,
         folds::{FOLD_COSINE, REACH},
     },
     num::math,
@@ -38,13 +38,23 @@ const SWEEPS: u32 = 32;
 /// Lengths of moves that are tried, in mean edges at the vertex.
 const STEPS: [f64; 6] = [0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0];
 
-/// What is near the faces that may have to be repaired.
-struct Faults(Surroundings);
+/// The original, and where faces must look for it: what is near the faces of the simplified mesh, in frame units.
+struct Nearby<'a> {
+    original: &'a Mesh,
+    reach: f64,
+}
 
-impl Faults {
-    /// What is near the middles of `sharp` edges and of the faces at them: enough to find faults.
-    /// Of every `stride`-th face of the original.
-    fn at_faces(live: &LiveMesh, original: &Mesh, sharp: &[u32], stride: usize) -> Self {
+impl<'a> Nearby<'a> {
+    fn new(live: &LiveMesh, original: &'a Mesh) -> Self {
+        let frame = live.frame();
+        let (low, high) = original.bounds().unwrap_or_default();
+        let reach = REACH * math::length(frame.enter(high) - frame.enter(low));
+        Self { original, reach }
+    }
+
+    /// What is near the middles of `sharp` edges and of the faces at them, of every `stride`-th face: all of them are
+    /// enough to find faults.
+    fn at_faces(&self, live: &LiveMesh, sharp: &[u32], stride: usize) -> Mesh {
         let faces = faces_at(live, sharp).into_iter();
         let boxes = faces.filter_map(|face| {
             let [a, b, c] = live.points(face)?;
@@ -54,11 +64,11 @@ impl Faults {
             let [a, b] = live.edge(edge)?.map(|v| live.position(v));
             Some([(a + b) * 0.5; 2])
         });
-        Self::within(live, original, boxes.chain(edges), stride)
+        self.within(live, boxes.chain(edges), stride)
     }
 
     /// What is near the faces at some vertices, wherever one of those may go: enough to repair them.
-    fn at_vertices(live: &LiveMesh, original: &Mesh, vertices: &[Vec<u32>]) -> Self {
+    fn at_vertices(&self, live: &LiveMesh, vertices: &[Vec<u32>]) -> Mesh {
         let boxes = vertices.iter().flatten().map(|&v| {
             let faces = live.triangles_at(v).filter_map(|f| live.points(f));
             let start = [live.position(v); 2];
@@ -68,24 +78,27 @@ impl Faults {
             let farthest = DVec3::splat(math::length(high - low));
             [low - farthest, high + farthest]
         });
-        Self::within(live, original, boxes, 1)
+        self.within(live, boxes, 1)
     }
 
     fn within(
+        &self,
         live: &LiveMesh,
-        original: &Mesh,
         boxes: impl Iterator<Item = [DVec3; 2]>,
         stride: usize,
-    ) -> Self {
+    ) -> Mesh {
         let frame = live.frame();
-        let bounds = original.bounds().unwrap_or_default();
-        let reach = REACH * math::length(frame.enter(bounds.1) - frame.enter(bounds.0));
-        let margin = DVec3::splat(reach);
+        let margin = DVec3::splat(self.reach);
         let boxes = boxes.map(|[low, high]| [low - margin, high + margin].map(|p| frame.leave(p)));
-        let part = original.near(&boxes.collect::<Vec<_>>(), stride);
-        Self(Surroundings::of(&part.enter_frame(frame), reach))
+        let part = self.original.near(&boxes.collect::<Vec<_>>(), stride);
+        part.enter_frame(frame)
     }
+}
 
+/// Tells faults near which it knows the original.
+struct Faults(Surroundings);
+
+impl Faults {
     /// Of `sharp` edges and the faces at them, the vertices of every folded edge's faces and of every flipped face.
     fn find(&self, live: &LiveMesh, sharp: &[u32]) -> Vec<Vec<u32>> {
         let is_new = |&e: &u32| {
@@ -165,17 +178,20 @@ pub(super) fn unfold(
     progress.step("unfold", 0, u64::from(SWEEPS))?;
     let mut sharp = sharp_edges(live, None);
     // Nearly all of them look where one of a few faces of the original does: no others are needed to see that.
-    let some = Faults::at_faces(live, original, &sharp, FEW);
+    let nearby = Nearby::new(live, original);
+    let some = Sides::of_part(&nearby.at_faces(live, &sharp, FEW), nearby.reach);
+    let agrees = |face| some.as_ref().is_some_and(|sides| sides.agrees(face));
     sharp.retain(|&edge| {
         let mut faces = faces_at(live, &[edge]).into_iter();
-        let differs = |f| live.points(f).is_some_and(|face| !some.0.agrees(face));
+        let differs = |f| live.points(f).is_some_and(|face| !agrees(face));
         is_folded(live, edge, FOLD_COSINE) || faces.any(differs)
     });
-    let mut left = Faults::at_faces(live, original, &sharp, 1).find(live, &sharp);
+    let faults = |part: &Mesh| Faults(Surroundings::of(part, nearby.reach));
+    let mut left = faults(&nearby.at_faces(live, &sharp, 1)).find(live, &sharp);
     if left.is_empty() {
         return Ok(());
     }
-    let faults = Faults::at_vertices(live, original, &left);
+    let faults = faults(&nearby.at_vertices(live, &left));
     let mut search = Search::default();
     for sweep in 0..SWEEPS {
         if left.is_empty() {
