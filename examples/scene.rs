@@ -1,6 +1,8 @@
-//! Writes one of the two scenes that billboards are measured on, of any size, and the view cell that goes with it:
+//! Writes a scene that results are measured on, of any size; those for billboards with the view cell that goes with it:
 //!
 //! ```text
+//! cargo run --release --example scene -- engine 2 engine.ply
+//! cargo run --release --example scene -- motor 3 motor.ply
 //! cargo run --release --example scene -- city 20 21 city.obj city.json
 //! cargo run --release --example scene -- forest 10000 500 forest.obj forest.json
 //! ```
@@ -35,9 +37,21 @@ fn main() -> ExitCode {
 fn write(words: &[&str]) -> Result<()> {
     let usage = || {
         Error::Usage(
-            "expected: city COLUMNS ROWS MESH CELL, or forest TREES RADIUS MESH CELL".into(),
+            "expected: engine DETAIL MESH, motor DETAIL MESH, city COLUMNS ROWS MESH CELL, or forest TREES RADIUS MESH \
+             CELL"
+                .into(),
         )
     };
+    if let [scene, detail, mesh] = words {
+        let detail = detail.parse().map_err(|_| usage())?;
+        let scene = match *scene {
+            "engine" => generate::engine(detail),
+            "motor" => generate::motor(detail),
+            _ => return Err(usage()),
+        };
+        io::write(Path::new(mesh), &scene)?;
+        return Ok(());
+    }
     let [scene, first, second, mesh, cell] = words else {
         return Err(usage());
     };

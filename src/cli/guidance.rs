@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::visibility::parse_cameras;
+use super::visibility::{finish, parse_cameras};
 use crate::{
-    Error, Result, io,
+    Result, io,
     mesh::Mesh,
     simplify::visibility::VisibilityOptions,
     visibility::{Options as MeasureOptions, Survey, Visibility},
@@ -13,7 +13,8 @@ use crate::{
 /// Options of the method `visibility`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct Guidance {
-    /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, instead of measuring
+    /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, by whichever rule, instead
+    /// of measuring
     #[arg(long, value_name = "FILE")]
     visibility: Option<PathBuf>,
     /// Visibility method: measure with 6, 18, 66, 258, 1026 or 4098 cameras [default: 258]
@@ -50,16 +51,15 @@ impl Guidance {
     /// The visibility in the file, where one is given.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Input`] for a file that cannot be used, or that belongs to another mesh.
+    /// [`Error::Io`](crate::Error::Io), [`Error::Input`](crate::Error::Input) and
+    /// [`Error::Unsupported`](crate::Error::Unsupported) for a file that cannot be used, or that belongs to another
+    /// mesh.
     pub(super) fn read(&self, mesh: &Mesh) -> Result<Option<Visibility>> {
         let Some(path) = &self.visibility else {
             return Ok(None);
         };
         let bytes = io::bytes::read(path)?;
         let survey = Survey::from_bytes(&bytes, path)?;
-        match survey.finish(mesh) {
-            Err(Error::Usage(message)) => Err(Error::input(path, message)),
-            other => other.map(Some),
-        }
+        finish(path, &survey, mesh).map(Some)
     }
 }

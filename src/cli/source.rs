@@ -47,18 +47,31 @@ pub(super) fn require_triangles(path: &Path, mesh: &Mesh) -> Result<()> {
 
 /// Refuses files that cannot be written, and one name for two of them: before long work, not after it.
 pub(super) fn require_outputs<'a>(outputs: impl Iterator<Item = &'a PathBuf>) -> Result<()> {
-    let mut seen: Vec<&PathBuf> = Vec::new();
+    let mut seen: Vec<PathBuf> = Vec::new();
     for path in outputs {
-        if seen.contains(&path) && !is_device(path) {
+        let place = place(path);
+        if seen.contains(&place) && !is_device(path) {
             return Err(Error::Usage(format!(
                 "{} would be written twice; give each output a name of its own",
                 path.display()
             )));
         }
         io::atomic::probe(path)?;
-        seen.push(path);
+        seen.push(place);
     }
     Ok(())
+}
+
+/// A path of which another spelling is equal: the file itself need not be there.
+fn place(path: &Path) -> PathBuf {
+    let folder = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_path_buf(),
+    }
 }
 
 fn is_device(path: &Path) -> bool {

@@ -96,6 +96,11 @@ const PAPER_EDGE_LIMIT: f64 = 16.0;
 impl Options {
     /// The published method to the letter: cameras on the axes that all count alike, and the depths of neighbouring
     /// pixels for triangles that no pixel shows.
+    ///
+    /// V(M) is then 0.916 for the Stanford bunny from 66 cameras and 0.761 for the dragon from 18, where Table 1 of the
+    /// paper has 0.958 and 0.804; the same rule on buffers of an independent ray caster gives our values. What the
+    /// paper leaves open, the tolerance and the neighbourhood of the depth test, decides: none that we tried gives
+    /// theirs. Its tori (0.728) and teapot (0.890) are other meshes than ours.
     #[must_use]
     pub fn paper() -> Self {
         Self {

@@ -102,7 +102,10 @@ impl Survey {
         }
         if self.options != other.options {
             return refused(
-                "were counted with different options",
+                &format!(
+                    "were counted with different options ({})",
+                    self.difference(other)
+                ),
                 "the same cameras, size and rules in every part",
             );
         }
@@ -141,17 +144,45 @@ impl Survey {
         Ok(())
     }
 
+    /// The options in which another survey differs, and what they are in both.
+    fn difference(&self, other: &Self) -> String {
+        let [own, others] =
+            [self, other].map(|survey| match serde_json::to_value(survey.options) {
+                Ok(serde_json::Value::Object(options)) => options,
+                _ => serde_json::Map::new(),
+            });
+        let differs = own
+            .iter()
+            .filter(|(name, value)| others.get(*name) != Some(*value));
+        let texts = differs.map(|(name, value)| {
+            let other = others.get(name).unwrap_or(&serde_json::Value::Null);
+            format!("{name} {value} and {other}")
+        });
+        texts.collect::<Vec<_>>().join(", ")
+    }
+
     /// V(t) and V(M) of `mesh`.
     ///
     /// # Errors
-    /// [`Error::Usage`] where it is another mesh than the one that was counted, or a view is missing.
+    /// [`Error::Usage`] where it is another mesh than the one that was counted, or a view is missing;
+    /// [`Error::Unsupported`] where another version of this crate counted.
     pub fn finish(&self, mesh: &Mesh) -> Result<Visibility> {
-        if self.triangle_count() != mesh.triangles().len() || self.digest != content_digest(mesh) {
+        let (own, other) = (self.triangle_count(), mesh.triangles().len());
+        if own != other || self.digest != content_digest(mesh) {
+            let sizes = if own == other {
+                String::new()
+            } else {
+                format!(", of {own} triangles, than the one of {other}")
+            };
             return Err(Error::Usage(format!(
-                "the survey belongs to another mesh, of {} triangles, than the one of {}; measure this mesh, or give \
-                 the file that was measured",
-                self.triangle_count(),
-                mesh.triangles().len()
+                "the survey belongs to another mesh{sizes}; measure this mesh, or give the file that was measured"
+            )));
+        }
+        if self.version != env!("CARGO_PKG_VERSION") {
+            return Err(Error::Unsupported(format!(
+                "the survey was counted by version {}, and this is {}, which may count otherwise; measure again",
+                self.version,
+                env!("CARGO_PKG_VERSION")
             )));
         }
         if !self.is_complete() {

@@ -79,7 +79,9 @@ impl Survey {
         }
         let body = bytes.len().saturating_sub(32);
         if body < MAGIC.len() + 4 || Sha256::digest(&bytes[..body])[..] != bytes[body..] {
-            return Err(reader.bad("cut short or damaged: the checksum at the end does not fit"));
+            return Err(reader.bad(
+                "cut short or damaged: the checksum at the end does not fit; copy it again, or measure again",
+            ));
         }
         reader.rest = &bytes[MAGIC.len() + 4..body];
         let version = reader.text()?;

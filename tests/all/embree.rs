@@ -146,8 +146,8 @@ fn embree_hits_what_the_rasterizer_shows() {
             let (tally, far) = against_embree(packages, &mesh, &set);
             tell(&format!("{name} {projection:?}"), &tally, far);
             assert_eq!(tally.unexplained(), 0, "{name}: {:?}", tally.worst);
-            // Orthographic views of regular scenes put pixel centres on edges, for which Embree has no rule.
-            if projection == Projection::Perspective {
+            // Orthographic views of a regular grid put rows of pixel centres on edges, for which Embree has no rule.
+            if projection == Projection::Perspective || name != "plane" {
                 assert!(tally.explained_share() <= 1e-4, "{name}: {tally:?}");
             }
             assert!(far <= 1e-3, "{name}: {far} of the depths differ");

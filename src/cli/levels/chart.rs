@@ -62,11 +62,15 @@ fn draw(
         .configure_mesh()
         .x_desc("triangles")
         .y_desc("image error (equation 5.11), levels")
+        .x_labels(6)
+        .x_label_formatter(&|x| format!("{x:.0}"))
         .draw()?;
-    chart
-        .configure_secondary_axes()
-        .y_desc("mean distance, % of the diagonal")
-        .draw()?;
+    if levels.iter().any(|l| l.distance_mean.is_some()) {
+        chart
+            .configure_secondary_axes()
+            .y_desc("mean distance, % of the diagonal")
+            .draw()?;
+    }
     let mut names: Vec<&str> = Vec::new();
     for level in levels {
         if !names.contains(&level.method) {

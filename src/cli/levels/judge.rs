@@ -37,7 +37,8 @@ pub(super) struct Level {
     /// As shares of the diagonal of the original's bounding box.
     pub(super) distance_mean: Option<f64>,
     pub(super) distance_max: Option<f64>,
-    /// How much less image error than the first method, in %; `None` for that method itself.
+    /// How much less image error than the first method, in %; `None` for that method itself, and where one of the two
+    /// did not reach the level: they are then of different sizes.
     pub(super) less: Option<f64>,
     content_sha256: String,
 }
@@ -138,7 +139,8 @@ impl<'a> Judge<'a> {
             let first = levels.first().map(|l| l.method);
             if first.is_some_and(|first| first != level.method) {
                 let same = levels.iter().find(|l| l.target == level.target);
-                level.less = same.map(|l| less(l.image_error, level.image_error));
+                let both = same.filter(|l| l.reached && level.reached);
+                level.less = both.map(|l| less(l.image_error, level.image_error));
             }
             levels.push(level);
         }
@@ -174,18 +176,19 @@ pub(super) fn means(levels: &[Level]) -> Vec<(&'static str, f64)> {
 /// A line for each level below a line of names; empty where nothing was measured.
 pub(super) fn csv(levels: &[Level]) -> String {
     let mut text = String::from(
-        "method,percent,target,triangles,image_error,rms,distance_mean,distance_max,less_image_error_percent\n",
+        "method,percent,target,triangles,reached,image_error,rms,distance_mean,distance_max,less_image_error_percent\n",
     );
     let number = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
     for l in levels {
         // Writing into a string cannot fail.
         let _ = writeln!(
             text,
-            "{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{},{},{}",
             l.method,
             l.percent,
             l.target,
             l.triangles,
+            l.reached,
             l.image_error,
             l.rms,
             number(l.distance_mean),

@@ -1,7 +1,9 @@
 //! `lodmark levels`: methods against each other from fine to coarse, as in Figure 4 of Zhang & Turk 2002.
 //!
-//! Every method runs once, down to the coarsest level; the levels above it come from its history and are bit-equal to
-//! runs of their own. Deviation for the image-driven method: pictures take over where they would for the finest level.
+//! Every method runs once, down to the coarsest level; the levels above it come from its history. Those of geometric
+//! methods are bit-equal to runs of their own with folds kept (`simplify --keep-folds`): unfolding happens once, after
+//! the last collapse, and would set the coarsest level apart. Deviations for the image-driven method: pictures take over
+//! where they would for the finest level, and only the coarsest level is polished.
 
 mod chart;
 mod judge;
@@ -25,6 +27,7 @@ use crate::{
         simplify, simplify_guided,
         visibility::VisibilityOptions,
     },
+    visibility::Visibility,
 };
 use judge::{Judge, Level};
 
@@ -34,7 +37,8 @@ use judge::{Judge, Level};
 Writes levels.csv and levels.svg into DIR. The image error is equation 5.11 of Zhang & Turk 2002: the root of the summed \
 squared luma differences, flat, from the 20 corners of a dodecahedron; rms is the same per pixel, in levels. Distances \
 are the larger of both ways, in % of the diagonal of the original's bounding box. `less` says how much less image error \
-a method has than the first one, in %; 0 where neither has any.")]
+a method has than the first one, in %; 0 where neither has any. Its mean leaves out levels that either did not reach. \
+Folds are kept at every level, as by simplify --keep-folds.")]
 pub(super) struct Options {
     /// The mesh to simplify: .obj, .ply or .stl
     #[arg(value_name = "IN")]
@@ -132,12 +136,13 @@ impl Options {
         (!self.no_distance).then(|| self.distance_samples.unwrap_or(DEFAULT_SAMPLES))
     }
 
-    /// Runs a method down to the last of `targets`.
+    /// Runs a method down to the last of `targets`; `visibility` was measured before, where it is given.
     fn run(
         &self,
         method: Method,
         mesh: &Mesh,
         targets: &[usize],
+        visibility: Option<&Visibility>,
         terminal: &Terminal,
     ) -> Result<Outcome> {
         let (finest, coarsest) = match targets {
@@ -152,6 +157,7 @@ impl Options {
             Method::Quadric => RunOptions::quadric(amount),
             Method::Visibility => RunOptions::visibility(amount),
         };
+        options.unfold = false;
         if self.topology_free {
             options.rules.topology = Topology::Free;
         }
@@ -168,8 +174,8 @@ impl Options {
                     quadric: own.quadric,
                     ..self.guidance.options()
                 };
-                if let Some(visibility) = self.guidance.read(mesh)? {
-                    return simplify_guided(mesh, &options, &visibility, terminal);
+                if let Some(visibility) = visibility {
+                    return simplify_guided(mesh, &options, visibility, terminal);
                 }
             }
             MethodOptions::Memoryless(_)
@@ -186,6 +192,8 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let mesh = source::read(&options.input, !options.no_weld, terminal)?;
     source::require_triangles(&options.input, &mesh)?;
     let mesh = canonical(&mesh).mesh;
+    source::require_triangles(&options.input, &mesh)?;
+    let visibility = options.guidance.read(&mesh)?;
     let count = mesh.triangles().len();
     let folder = &options.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
@@ -207,7 +215,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     )?;
     let mut runs = Vec::new();
     for &method in &options.methods {
-        let outcome = options.run(method, &mesh, &targets, terminal)?;
+        let outcome = options.run(method, &mesh, &targets, visibility.as_ref(), terminal)?;
         let name = outcome.options.method.name();
         judge.levels(name, &outcome, &percents, &targets, |percent, level| {
             if options.meshes {
@@ -283,6 +291,6 @@ fn show(levels: &[Level], means: &[(&'static str, f64)], terminal: &Terminal) {
     }
     answer!("{}", table::aligned(&rows));
     for (name, mean) in means {
-        answer!("{name}: {mean:.2} % less image error on average");
+        answer!("{name}: {mean:.2} % less image error on average over the levels that are reached");
     }
 }

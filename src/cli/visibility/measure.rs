@@ -145,7 +145,7 @@ pub(in crate::cli) fn run(
     terminal: &Terminal,
 ) -> Result<Verdict> {
     let figure = options.convergence.as_ref();
-    let figure = figure.map(|path| [path.with_extension("csv"), path.with_extension("svg")]);
+    let figure = figure.map(|path| ["csv", "svg"].map(|kind| named(path, kind)));
     check_outputs(options, figure.as_ref(), common)?;
     let survey = options.from.as_deref().map(merge::read).transpose()?;
     let measurement = match &survey {
@@ -249,7 +249,10 @@ fn measured(
             (Survey::of_views(mesh, measurement, all, terminal)?, None)
         }
     };
-    let found = survey.finish(mesh)?;
+    let found = match &options.from {
+        Some(path) => merge::finish(path, &survey, mesh)?,
+        None => survey.finish(mesh)?,
+    };
     if let Some(path) = &options.partial {
         merge::write(path, &survey)?;
     }
@@ -279,6 +282,18 @@ fn check_outputs(options: &Options, figure: Option<&[PathBuf; 2]>, common: &Comm
     ];
     let figure = figure.into_iter().flatten();
     source::require_outputs(single.into_iter().flatten().chain(figure))
+}
+
+/// `path` with an extension, which replaces only another of those of the figure: `bunny-0.5` has none.
+fn named(path: &Path, extension: &str) -> PathBuf {
+    let known = |e: &std::ffi::OsStr| ["csv", "svg"].iter().any(|k| e.eq_ignore_ascii_case(k));
+    if path.extension().is_some_and(known) {
+        return path.with_extension(extension);
+    }
+    let mut name = path.as_os_str().to_owned();
+    name.push(".");
+    name.push(extension);
+    name.into()
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {

@@ -6,7 +6,8 @@ use crate::{
     Error, Result,
     cli::{Common, Verdict, report, source, terminal::Terminal},
     io,
-    visibility::Survey,
+    mesh::Mesh,
+    visibility::{Survey, Visibility},
 };
 
 /// Put partial visibility results together, in any order: the bytes of a run over all their views
@@ -60,6 +61,16 @@ pub(in crate::cli) fn run(
 /// Reads a survey.
 pub(super) fn read(path: &Path) -> Result<Survey> {
     Survey::from_bytes(&io::bytes::read(path)?, path)
+}
+
+/// The visibility that a survey in a file holds, which must be of `mesh` and of all views.
+pub(in crate::cli) fn finish(path: &Path, survey: &Survey, mesh: &Mesh) -> Result<Visibility> {
+    let named = |message| format!("{}: {message}", path.display());
+    survey.finish(mesh).map_err(|error| match error {
+        Error::Usage(message) => Error::input(path, message),
+        Error::Unsupported(message) => Error::Unsupported(named(message)),
+        other => other,
+    })
 }
 
 /// Writes a survey; an existing file is replaced as a whole.

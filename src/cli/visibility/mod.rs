@@ -5,4 +5,4 @@ mod measure;
 mod merge;
 
 pub(super) use measure::{Options, parse_cameras, run};
-pub(super) use merge::{Options as MergeOptions, run as run_merge};
+pub(super) use merge::{Options as MergeOptions, finish, run as run_merge};

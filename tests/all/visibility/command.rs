@@ -109,8 +109,17 @@ fn views_on_several_machines_give_another_file_than_on_one() {
     );
     assert!(said.contains("views 0..2 in common"), "{said}");
     assert!(!dir.path().join("x.vis").exists());
-    let said = expect(&dir, 2, &["visibility", "in.ply", "--from", "ca.vis"]);
-    assert!(said.contains("merge the missing parts"), "{said}");
+    let said = expect(&dir, 3, &["visibility", "in.ply", "--from", "ca.vis"]);
+    assert!(
+        said.contains("ca.vis") && said.contains("merge the missing parts"),
+        "{said}"
+    );
+    put(&dir, "other.ply", &generate::torus(1.0, 0.5, 16, 8));
+    let said = expect(&dir, 3, &["visibility", "other.ply", "--from", "sum.vis"]);
+    assert!(
+        said.contains("sum.vis") && said.contains("another mesh;"),
+        "{said}"
+    );
     let said = expect(&dir, 3, &["merge-visibility", "in.ply", "--out", "x.vis"]);
     assert!(said.contains("not a survey"), "{said}");
 }
@@ -211,9 +220,74 @@ fn requests_that_make_no_sense_begin_long_work() {
         &["--from", "p", "--paper"],
         &["--from", "p", "--table", "t.npy"],
         &["--partial", "p", "--out", "p.ply", "--table", "p.ply"],
+        &["--out", "p.ply", "--json", "./p.ply"],
+        &["--out", "./p.ply", "--json", "../FOLDER/p.ply"],
     ] {
-        expect(&dir, 2, &[&["visibility", "in.ply"], words].concat());
+        let own = dir.path().file_name().and_then(|n| n.to_str());
+        let words: Vec<String> = words
+            .iter()
+            .map(|word| word.replace("FOLDER", own.expect("a name")))
+            .collect();
+        let words = words.iter().map(String::as_str);
+        let words: Vec<&str> = ["visibility", "in.ply"].into_iter().chain(words).collect();
+        expect(&dir, 2, &words);
     }
     let mut left: Vec<_> = fs::read_dir(dir.path()).expect("a folder").collect();
     assert_eq!(left.len(), 1, "{:?}", left.pop());
+}
+
+#[test]
+fn a_figure_takes_the_name_of_another() {
+    let dir = folder();
+    put(&dir, "in.ply", &generate::cube());
+    fs::write(dir.path().join("cube-0.csv"), "mine").expect("writes");
+    let words = [
+        "--cameras",
+        "6",
+        "--size",
+        "16",
+        "--convergence",
+        "cube-0.5",
+    ];
+    expect(&dir, 0, &[&["visibility", "in.ply"], &words[..]].concat());
+    let text = |name: &str| fs::read_to_string(dir.path().join(name)).expect("written");
+    assert_eq!(text("cube-0.csv"), "mine");
+    assert!(text("cube-0.5.csv").starts_with("cameras,") && text("cube-0.5.svg").contains("<svg"));
+}
+
+#[test]
+fn counts_of_another_version_are_taken_as_if_they_were_of_this_one() {
+    use sha2::{Digest, Sha256};
+    let dir = folder();
+    put(&dir, "in.ply", &generate::cube());
+    let small = ["visibility", "in.ply", "--cameras", "6", "--size", "16"];
+    expect(&dir, 0, &[&small[..], &["--partial", "own.vis"]].concat());
+    let mut bytes = fs::read(dir.path().join("own.vis")).expect("written");
+    let version = env!("CARGO_PKG_VERSION").as_bytes();
+    // After the magic, the format and the length.
+    let at = 16;
+    assert_eq!(&bytes[at..at + version.len()], version);
+    bytes[at] = if bytes[at] == b'9' { b'8' } else { b'9' };
+    let end = bytes.len() - 32;
+    let seal = Sha256::digest(&bytes[..end]);
+    bytes[end..].copy_from_slice(&seal);
+    fs::write(dir.path().join("other.vis"), bytes).expect("writes");
+    let said = expect(&dir, 4, &["visibility", "in.ply", "--from", "other.vis"]);
+    assert!(
+        said.contains("other.vis") && said.contains("measure again"),
+        "{said}"
+    );
+    let words = [
+        "-t",
+        "4",
+        "--method",
+        "visibility",
+        "--visibility",
+        "other.vis",
+    ];
+    expect(
+        &dir,
+        4,
+        &[&["simplify", "in.ply", "out.ply"], &words[..]].concat(),
+    );
 }

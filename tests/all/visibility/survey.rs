@@ -122,7 +122,9 @@ fn parts_that_do_not_belong_together_are_added() {
     };
     let refused = sum.merge(&part(&other, 3..6)).expect_err("other options");
     assert!(
-        refused.to_string().contains("different options"),
+        refused
+            .to_string()
+            .contains("different options (size 16 and 17)"),
         "{refused}"
     );
     let cube = Survey::of_views(&generate::cube(), &options, 3..6, &Silent).expect("counts");
