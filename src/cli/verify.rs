@@ -254,6 +254,9 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
             "the claim is broken"
         } else if found.proven {
             "the claim holds: proven"
+        } else if found.property == Property::Correspondence && found.at_most_deg.is_none() {
+            "nothing was found that breaks the claim, but no angle below 90 degrees is proven: viewers come very near to \
+             what was moved"
         } else {
             "nothing breaks the claim"
         }

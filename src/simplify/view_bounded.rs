@@ -5,7 +5,8 @@
 //! the ends are tried, the cheapest first. Legal is what keeps every point within the angle of where its whole history
 //! has put it, exactly and not by adding up steps: see [`Correspondence`]. Deviation from the notes: not a sum of
 //! displacements but the displacement itself decides, and beside its length its direction (see [`AngleLimit`]).
-//! The bound is on positions; texture coordinates are carried along as by every other method. Angles: degrees in options,
+//! A mesh that is far from the origin for its size is moved there first, exactly, so that the rounding of large
+//! coordinates has no part in what is decided. The bound is on positions; texture coordinates are carried along as by every other method. Angles: degrees in options,
 //! radians inside.
 
 use glam::DVec3;
@@ -68,6 +69,8 @@ pub struct ViewBounded {
     placement: MemorylessOptions,
     limit: AngleLimit,
     map: Correspondence,
+    /// What the map's positions are relative to, in frame units.
+    origin: DVec3,
     scratch: Buffers,
     /// A collapse was committed without a map: the account is worthless.
     lost: bool,
@@ -93,11 +96,13 @@ impl ViewBounded {
         progress: &dyn Progress,
     ) -> Result<Self> {
         options.check()?;
+        let origin = origin(live);
         let originals: Vec<[DVec3; 3]> = (0..live.triangle_ids())
-            .map(|t| live.points(t).unwrap_or([DVec3::ZERO; 3]))
+            .map(|t| live.points(t).unwrap_or([origin; 3]).map(|p| p - origin))
             .collect();
         progress.step("measure the way to the cell", 0, 0)?;
         let cell = options.cell.enter_frame(live.frame());
+        let cell = cell.relative_to(origin);
         let angle = options.error_deg * (std::f64::consts::PI / 180.0);
         let limit = AngleLimit::new(&originals, &cell, angle);
         let alive = |t| live.triangle(t).is_some();
@@ -106,12 +111,13 @@ impl ViewBounded {
             placement: options.placement,
             map: Correspondence::new(originals, alive),
             limit,
+            origin,
             scratch: Buffers::default(),
             lost: false,
         })
     }
 
-    /// The map so far: frame units, faces by their live ids.
+    /// The map so far: frame units from the method's own origin, faces by their live ids.
     #[must_use]
     pub fn correspondence(&self) -> &Correspondence {
         &self.map
@@ -130,10 +136,12 @@ impl ViewBounded {
         let ids: Vec<u32> = (0..live.triangle_ids())
             .filter(|&t| live.triangle(t).is_some())
             .collect();
-        let frame = live.frame();
-        Ok(self
-            .map
-            .renumbered(&ids, |p| frame.leave(p), |x| frame.leave_length(x, 1)))
+        let (frame, origin) = (live.frame(), self.origin);
+        Ok(self.map.renumbered(
+            &ids,
+            |p| frame.leave(p + origin),
+            |x| frame.leave_length(x, 1),
+        ))
     }
 
     /// Whether the collapse to an admitted place keeps every point within the limit.
@@ -145,7 +153,8 @@ impl ViewBounded {
             pieces,
         } = buffers;
         site.patch(to, patch);
-        let fan = lay_out(site.live, patch, removed, added).ok_or(Refusal::Unmapped)?;
+        let fan =
+            lay_out(site.live, patch, self.origin, removed, added).ok_or(Refusal::Unmapped)?;
         match self.map.allows(&fan, &self.limit, pieces) {
             Answer::Allowed => Ok(()),
             Answer::Denied => Err(Refusal::Bound),
@@ -154,18 +163,48 @@ impl ViewBounded {
     }
 }
 
-/// The fan of a patch, before or after it is committed.
+/// Least coordinates along the axes along which a mesh is this many sizes away from the origin; 0 along others.
+/// Differences of coordinates that are alike in all but so many bits are exact.
+const FAR: f64 = 512.0;
+
+fn origin(live: &LiveMesh) -> DVec3 {
+    let points = (0..live.triangle_ids()).filter_map(|t| live.points(t));
+    let bounds = points
+        .flatten()
+        .fold(None, |bounds: Option<(DVec3, DVec3)>, p| {
+            Some(bounds.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
+        });
+    let Some((low, high)) = bounds else {
+        return DVec3::ZERO;
+    };
+    let size = (high - low).max_element();
+    let along = |low: f64, high: f64| {
+        if low.abs().min(high.abs()) > FAR * size && (low < 0.0) == (high < 0.0) {
+            low
+        } else {
+            0.0
+        }
+    };
+    DVec3::new(
+        along(low.x, high.x),
+        along(low.y, high.y),
+        along(low.z, high.z),
+    )
+}
+
+/// The fan of a patch relative to `origin`, before or after it is committed.
 fn lay_out(
     live: &LiveMesh,
     patch: &Patch,
+    origin: DVec3,
     removed: &mut Vec<Face>,
     added: &mut Vec<Face>,
 ) -> Option<Fan> {
     let (moved, gone) = (patch.moved?, patch.gone?);
-    let face = |f: &PatchFace, points| Face {
+    let face = |f: &PatchFace, points: [DVec3; 3]| Face {
         id: f.id,
         corners: f.corners,
-        points,
+        points: points.map(|p| p - origin),
     };
     removed.clear();
     removed.extend(patch.removed.iter().map(|f| face(f, patch.before(live, f))));
@@ -176,7 +215,7 @@ fn lay_out(
         added,
         keep: moved.vertex,
         gone,
-        to: moved.to,
+        to: moved.to - origin,
     })
 }
 
@@ -233,8 +272,8 @@ impl Method for ViewBounded {
             pieces,
             ..
         } = &mut self.scratch;
-        let applied =
-            lay_out(live, patch, removed, added).is_some_and(|fan| self.map.apply(&fan, pieces));
+        let applied = lay_out(live, patch, self.origin, removed, added)
+            .is_some_and(|fan| self.map.apply(&fan, pieces));
         self.lost |= !applied;
     }
 }

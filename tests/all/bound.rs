@@ -1,4 +1,6 @@
 //! Bounds of whole surfaces for a view cell, and what usual tests claim instead.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
 
 #![expect(clippy::float_cmp, reason = "values that are exact")]
 
@@ -20,7 +22,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::cases;
+use crate::bounded;
 
 fn at(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -287,7 +289,7 @@ fn mixed(corners: [DVec3; 3], w: [f64; 3]) -> DVec3 {
 }
 
 proptest! {
-    #![proptest_config(cases(300))]
+    #![proptest_config(bounded(300))]
 
     #[test]
     fn no_point_of_a_moved_triangle_is_seen_beyond_the_bound(

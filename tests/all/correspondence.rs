@@ -1,4 +1,9 @@
 //! The map from an original surface to a simplified one: through single collapses, and through whole runs.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
+
+#[path = "correspondence/judged.rs"]
+mod judged;
 
 use glam::DVec3;
 use lodmark::{
@@ -13,7 +18,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
-    cases,
+    bounded,
     shapes::{self, Random},
 };
 
@@ -180,7 +185,7 @@ fn covered(map: &Correspondence, triangle: u32) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(cases(if cfg!(debug_assertions) { 3_000 } else { 300_000 }))]
+    #![proptest_config(bounded(if cfg!(debug_assertions) { 3_000 } else { 300_000 }))]
 
     #[test]
     fn a_collapse_maps_every_point_of_the_fan_once_and_along_one_direction(kind in 0_u8..3, seed: u64) {
@@ -213,6 +218,20 @@ proptest! {
                 }
                 let most = (0..map.face_count() as u32).map(|f| map.displacement(f)).fold(0.0, f64::max);
                 prop_assert!(moved.length() <= most + 1e-7, "{moved} beyond {most}");
+            }
+        }
+        // Triangles beside each other agree on what they share.
+        for (i, one) in removed.iter().enumerate() {
+            for other in &removed[..i] {
+                let shared: Vec<u32> = one.corners.into_iter().filter(|v| other.corners.contains(v)).collect();
+                let &[p, q] = shared.as_slice() else { continue };
+                let s = random.unit();
+                let weight = |v: u32| if v == p { 1.0 - s } else if v == q { s } else { 0.0 };
+                let found: Vec<DVec3> = [one, other].iter()
+                    .flat_map(|f| images(&map, &after, f.id, [weight(f.corners[1]), weight(f.corners[2])])).collect();
+                for image in &found {
+                    prop_assert!((*image - found[0]).length() < 1e-6, "{class:?}: torn along a side: {found:?}");
+                }
             }
         }
     }
@@ -325,7 +344,7 @@ fn run(mesh: &Mesh, triangles: u64, most: f64) -> (Correspondence, Mesh) {
 }
 
 proptest! {
-    #![proptest_config(cases(40))]
+    #![proptest_config(bounded(40))]
 
     #[test]
     fn after_many_collapses_the_map_still_covers_everything_once_without_a_tear(
@@ -341,6 +360,13 @@ proptest! {
         let mut random = Random(seed);
         for t in 0..mesh.triangles().len() as u32 {
             prop_assert!((covered(&map, t) - 1.0).abs() < 1e-12, "{} of {t}", covered(&map, t));
+        }
+        for piece in (0..map.face_count() as u32).flat_map(|face| map.pieces(face)) {
+            let corners: Vec<[f64; 2]> = piece.corners.iter().map(|c| c.source.get()).collect();
+            for pair in corners[1..].windows(2) {
+                let [[a, b], [c, d]] = [pair[0], pair[1]].map(|p| [p[0] - corners[0][0], p[1] - corners[0][1]]);
+                prop_assert!(a * d - b * c > -1e-6, "turned over: {corners:?}");
+            }
         }
         if most > 1.0 {
             // Pushed together beyond recognition, neighbours need not agree along their common side.

@@ -317,7 +317,7 @@ fn random_cell(class: &str, random: &mut Random) -> ViewCell {
 
 /// Cases for each class of cell: as many as `LODMARK_BOUND_CASES` says.
 fn trials() -> u32 {
-    std::env::var("LODMARK_BOUND_CASES").map_or(1_000, |n| n.parse().expect("a number"))
+    u32::try_from(crate::bound_cases(1_000)).expect("a number of cases")
 }
 
 /// An angle in (0, 90) degrees: small ones, middle ones, and ones close to 90.

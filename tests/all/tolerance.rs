@@ -1,6 +1,8 @@
 //! The method `tolerance`: no run breaks its bound, whatever the mesh; histories, stops and errors.
 //!
 //! Distances are sampled by brute force with the code of `envelope`, which shares none with the certificate.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
 
 use glam::DVec3;
 use lodmark::{
@@ -57,7 +59,7 @@ fn farthest(from: &Mesh, to: &Mesh, steps: u32) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(crate::cases(64))]
+    #![proptest_config(crate::bounded(64))]
 
     #[test]
     fn no_point_of_either_surface_is_farther_than_the_bound(

@@ -10,7 +10,7 @@ use lodmark::bound::tolerance::{
 use crate::shapes::Random;
 
 pub(crate) fn cases() -> u64 {
-    std::env::var("LODMARK_BOUND_CASES").map_or(1_000, |n| n.parse().expect("a number"))
+    crate::bound_cases(1_000)
 }
 
 fn vector(random: &mut Random, size: f64) -> DVec3 {
@@ -454,6 +454,37 @@ fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
         tight += u64::from(most > 0.3 * claimed);
     }
     assert!(tight > cases() / 40, "{tight}");
+}
+
+#[test]
+fn a_new_vertex_above_a_ridge_is_in_no_column_and_counts_all_the_same() {
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let [u, w] = [at(-0.5, 0.0, 0.0), at(0.5, 0.0, 0.0)];
+    let [east, north, west, south] = [
+        at(2.0, 0.0, -2.0),
+        at(0.0, 1.0, -2.0),
+        at(-2.0, 0.0, -2.0),
+        at(0.0, -1.0, -2.0),
+    ];
+    let outer = |points| OldFace {
+        points,
+        ends: [true, false, false],
+    };
+    let inner = |points| OldFace {
+        points,
+        ends: [true, false, true],
+    };
+    let faces = [
+        outer([w, south, east]),
+        outer([w, east, north]),
+        outer([u, north, west]),
+        outer([u, west, south]),
+        inner([w, north, u]),
+        inner([u, south, w]),
+    ];
+    let around = neighborhood(&faces).expect("no needles");
+    let claimed = around.deviation(at(0.0, 0.0, 0.3));
+    assert!(claimed >= 0.3, "{claimed}");
 }
 
 #[test]

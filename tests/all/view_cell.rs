@@ -1,4 +1,6 @@
 //! View cells: what is refused, what a file holds, and how far they are from triangles.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
 
 #![expect(clippy::float_cmp, reason = "values that are exact")]
 
@@ -12,7 +14,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::cases;
+use crate::bounded;
 
 fn at(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -275,7 +277,7 @@ fn fans(cell: &ViewCell) -> Vec<[DVec3; 3]> {
 }
 
 proptest! {
-    #![proptest_config(cases(1_000))]
+    #![proptest_config(bounded(1_000))]
 
     #[test]
     fn the_distance_of_a_polyhedron_is_that_of_its_closest_features(

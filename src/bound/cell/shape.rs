@@ -202,7 +202,13 @@ impl ViewCell {
         self.moved(|p| frame.leave(p))
     }
 
-    /// Every position through a scaling by a power of two, which changes no direction.
+    /// The same cell as seen from `origin`.
+    #[must_use]
+    pub fn relative_to(&self, origin: DVec3) -> Self {
+        self.moved(|p| p - origin)
+    }
+
+    /// Every position through a scaling by a power of two or a shift, which change no direction.
     fn moved(&self, scale: impl Fn(DVec3) -> DVec3) -> Self {
         let mut shape = self.0.clone();
         match &mut shape {

@@ -9,17 +9,21 @@
 //! halved where that does not decide it: an angle that is too large at a corner refuses at once. The angle of a pair of
 //! points takes its maximum over a polyhedron on its faces, as the set of viewpoints with a larger angle is connected
 //! and contains the points themselves, which are outside (the distance is not 0).
-//! Units: frame units with sizes near 1. Rounding: a ten-millionth of a limit is given away for it.
+//! Units: any in which surface and cell are near the origin, compared with their sizes. Rounding: a ten-millionth of a limit
+//! is given away for it, and of lengths the 10^13th part of the largest coordinate.
 
 use glam::DVec3;
 
 use super::Allowance;
 use crate::{
     bound::cell::{Shape, ViewCell},
-    num::math::{cos, length, sin, unit},
+    num::{
+        Frame,
+        math::{cos, length, sin, unit},
+    },
 };
 
-/// The part of every limit that is given away, and a length in units of the frame.
+/// The part of every limit that is given away, and a part of the largest coordinate.
 const MARGIN: f64 = 1e-7;
 const ABSOLUTE: f64 = 1e-13;
 /// How often a part of a cell is halved.
@@ -32,22 +36,39 @@ const PARTS: u32 = 64;
 pub struct AngleLimit {
     radii: Vec<f64>,
     tangent: f64,
+    /// What rounding may add to a displacement.
+    absolute: f64,
     /// Convex parts that together hold a viewpoint with the largest angle; none for a cell without an end.
     parts: Vec<Vec<DVec3>>,
 }
 
 impl AngleLimit {
-    /// The limit `angle` (radians, in [0, pi/2)) for viewers in `cell` of a surface, all in frame units. O(n).
+    /// The limit `angle` (radians, in [0, pi/2)) for viewers in `cell` of a surface, in the same units; the rounding of
+    /// coordinates is paid for, so that there should be no common offset to them. O(n).
     #[must_use]
     pub fn new(originals: &[[DVec3; 3]], cell: &ViewCell, angle: f64) -> Self {
         let sine = sin(angle);
+        // An endless cell is told by one of its points, wherever that is.
+        let place = match cell.shape() {
+            Shape::Line { point, .. }
+            | Shape::Plane { point, .. }
+            | Shape::HalfSpace { point, .. } => Some(point),
+            _ => None,
+        };
+        let largest = originals
+            .iter()
+            .flatten()
+            .chain(place)
+            .fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
+        let absolute = Frame::for_size(largest).leave_length(ABSOLUTE, 1);
         let radius = |&corners: &[DVec3; 3]| {
             let allowed = cell.distance_to_triangle(corners) * sine;
-            (allowed * (1.0 - MARGIN) - ABSOLUTE).max(0.0)
+            (allowed * (1.0 - MARGIN) - absolute).max(0.0)
         };
         Self {
             radii: originals.iter().map(radius).collect(),
             tangent: sine / cos(angle) * (1.0 - MARGIN),
+            absolute,
             parts: parts(cell),
         }
     }
@@ -61,6 +82,7 @@ impl AngleLimit {
         let mut numerator = 0.0_f64;
         for &v in part {
             let centre = piece.centre - v;
+            let rounding = self.absolute * length(centre);
             for (&p, &s) in piece.from.iter().zip(piece.to) {
                 let (d, r) = (s - p, p - v);
                 let exact = d.cross(r);
@@ -70,7 +92,7 @@ impl AngleLimit {
                 {
                     return false;
                 }
-                numerator = numerator.max(length(d.cross(centre)));
+                numerator = numerator.max(length(d.cross(centre)) + rounding);
             }
         }
         numerator += piece.displacement * piece.radius;

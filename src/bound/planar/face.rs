@@ -170,6 +170,52 @@ impl Projection {
         true
     }
 
+    /// False only where [`Projection::may_reach`] is for every point of a disc (centre, radius).
+    #[must_use]
+    pub fn may_reach_any(&self, (centre, radius): (DVec2, f64), offsets: Interval) -> bool {
+        let local = self.cell.enter(centre);
+        let d = self.direction;
+        let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
+        let (low, high) = (
+            offsets.min - self.offset - at.y - radius,
+            offsets.max - self.offset - at.y + radius,
+        );
+        let (way, sense) = if low > 0.0 {
+            (low, 1.0)
+        } else if high < 0.0 {
+            (-high, -1.0)
+        } else {
+            return true;
+        };
+        let size = |p: DVec2| p.x.abs() + p.y.abs();
+        for end in self.ends.into_iter().flatten() {
+            let sight = at - end;
+            let lenience = 2.0 * LENIENCE * (size(sight) + 2.0 * radius);
+            // What is next to the viewer is not told apart.
+            if size(sight) <= 4.0 * radius || lenience < 16.0 * CONTACT * (size(at) + size(end)) {
+                continue;
+            }
+            let closing = (sight.x.abs() - radius).max(0.0) * self.cos
+                - (sense * sight.y + radius) * self.sin;
+            let [x, y] = [sight.x.abs() + radius, sight.y.abs() + radius];
+            if way * (closing - lenience) > (x * x + y * y) * (self.sin + 2.0 * LENIENCE) {
+                return false;
+            }
+        }
+        if self.ends == [None, None] && local.y.abs() > radius {
+            let (side, toward) = (usize::from(local.y < 0.0), usize::from(sense < 0.0));
+            let [x, y] = [local.x.abs() + radius, local.y.abs() + radius];
+            let height = y * (1.0 + 2.0 * LENIENCE) + x * (2.0 * LENIENCE);
+            let tangents = self.tangents[side][toward].iter().flatten();
+            for Tangent { length, .. } in tangents {
+                if way > height * (length + 2.0 * LENIENCE) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
     /// With no tolerance a point may move in the direction of sight only, which all points of a face can do alike only
     /// where one viewpoint sees the face from its end.
     fn interval_without_tolerance(&self, face: &Face) -> Interval {

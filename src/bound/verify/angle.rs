@@ -7,8 +7,9 @@
 //! of the cell and from viewpoints all over it.
 //! Without a record only a weaker property can be checked: that every original point has *some* point of the simplified
 //! surface within the angle ([`Property::NearestInAngle`]). Endless cells are looked from within at least four sizes of
-//! the original around the foot of its centre; beyond, displacements are bounded by their lengths. An angle breaks a claim where it is larger by a hundred-millionth or 1e-10
-//! radians. The same result for any number of threads.
+//! the original around the foot of its centre; beyond, displacements are bounded by their lengths. An angle breaks a claim
+//! where it is larger by a hundred-millionth or 1e-10 radians. Meshes that are far from the origin for their size are seen
+//! from nearby, so that this is above rounding for them too. The same result for any number of threads.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -127,20 +128,33 @@ pub fn angles(
             "the correspondence belongs to other meshes than these",
         ));
     }
-    let frame = Frame::for_size(low.abs().max(high.abs()).max_element());
-    let corners = |mesh: &Mesh| -> Vec<[DVec3; 3]> {
-        let all = 0..mesh.triangles().len();
-        all.map(|t| mesh.corners(t).map(|p| frame.enter(p)))
-            .collect()
+    let coarse = Frame::for_size(low.abs().max(high.abs()).max_element());
+    let size = length(coarse.enter(high) - coarse.enter(low));
+    let is_far = size > 0.0 && FAR * size < 1.0;
+    let frame = Frame {
+        exponent: coarse.exponent
+            + if is_far {
+                Frame::for_size(size).exponent
+            } else {
+                0
+            },
     };
     let (low, high) = (frame.enter(low), frame.enter(high));
+    // Rounds nothing: coordinates that are alike in all but the last bits.
+    let shift = if is_far { low } else { DVec3::ZERO };
+    let corners = |mesh: &Mesh| -> Vec<[DVec3; 3]> {
+        let all = 0..mesh.triangles().len();
+        all.map(|t| mesh.corners(t).map(|p| frame.enter(p) - shift))
+            .collect()
+    };
+    let (low, high) = (low - shift, high - shift);
     let limit = degrees * DEGREE;
     let tangent = sin(limit) / cos(limit) * (1.0 + SLACK[0]) + SLACK[1];
     let check = Check {
         originals: corners(original),
         targets: corners(simplified),
         viewpoints: Viewpoints::new(
-            &cell.enter_frame(frame),
+            &cell.enter_frame(frame).relative_to(shift),
             (low + high) * 0.5,
             length(high - low),
         ),
@@ -167,9 +181,9 @@ pub fn angles(
     check.sample(samples, &mut found, progress)?;
     let worst = found.worst.map(|w| Sighting {
         triangle: w.triangle,
-        point: frame.leave(w.point).to_array(),
-        replacement: frame.leave(w.replacement).to_array(),
-        viewpoint: frame.leave(w.viewpoint).to_array(),
+        point: frame.leave(w.point + shift).to_array(),
+        replacement: frame.leave(w.replacement + shift).to_array(),
+        viewpoint: frame.leave(w.viewpoint + shift).to_array(),
         angle_deg: angle(w.point, w.replacement, w.viewpoint) / DEGREE,
     });
     let gap = mapped.as_ref().and_then(|m| m.gap);
@@ -201,6 +215,8 @@ pub fn angles(
     })
 }
 
+/// Sizes of the original from the origin on which it is far away.
+const FAR: f64 = 512.0;
 /// Largest coordinate of a mesh or cell, in sizes of the original.
 const LARGEST: f64 = 1e60;
 

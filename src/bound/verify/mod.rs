@@ -9,6 +9,7 @@ mod angle;
 mod cover;
 mod distance;
 mod mapped;
+mod meeting;
 mod nearest;
 mod proof;
 mod record;

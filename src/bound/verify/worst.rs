@@ -8,13 +8,14 @@
 //! of the denominator is `|V|^2` plus something linear, and `|V|^2` is at least its tangent plane at the middle `C`. So
 //! the quotients at pairs and corners, with `|V - C|^2` left out, bound all others, and their error is of second order in
 //! the size of part and piece. Where that is not near enough to what is attained somewhere, the larger of part and piece
-//! is halved; the part with the largest bound comes first.
+//! is halved; the part with the largest bound comes first. No halving comes down to a viewer who stands on a piece, or on
+//! what stands for it, and sees any angle: such places are looked for first.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec3;
 
-use super::{sight::tangent2, sighting::Seen};
+use super::{meeting::sights_at_meeting, sight::tangent2, sighting::Seen};
 
 /// How near an upper bound must come to what is attained: a share of the tangent.
 const NEAR: f64 = 0.002;
@@ -111,6 +112,9 @@ pub(super) fn refine(
     };
     for viewers in cell {
         look(corners, viewers, seen);
+        if bound2(corners, viewers) == f64::INFINITY {
+            look_at_meeting(corners, viewers, seen);
+        }
         add(&mut open, corners.to_vec(), viewers.clone());
     }
     for _ in 0..HALVINGS {
@@ -182,6 +186,27 @@ fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
     }
 }
 
+/// Measures where viewpoints are on the triangles of a piece, or on those that stand for them.
+fn look_at_meeting(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
+    for i in 2..corners.len() {
+        let three = [corners[0], corners[i - 1], corners[i]];
+        let turned = three.map(|[p, s]| [s, p]);
+        let turned = sights_at_meeting(turned, viewers).map(|([s, p], v)| ([p, s], v));
+        for ([point, replacement], viewpoint) in sights_at_meeting(three, viewers).chain(turned) {
+            let tangent2 = tangent2(point, replacement, viewpoint);
+            if tangent2 > seen.tangent2 {
+                *seen = Seen {
+                    tangent2,
+                    point,
+                    replacement,
+                    viewpoint,
+                    ..*seen
+                };
+            }
+        }
+    }
+}
+
 fn mean<T>(of: &[T], at: impl Fn(&T) -> DVec3) -> DVec3 {
     of.iter().map(at).fold(DVec3::ZERO, |sum, p| sum + p) / of.len() as f64
 }
@@ -240,4 +265,77 @@ fn halves<T: Copy>(
     halves[0][j] = middle;
     halves[1][i] = middle;
     halves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::generate::Pcg32;
+
+    fn mixed(points: &[DVec3], random: &mut Pcg32) -> (DVec3, Vec<f64>) {
+        let weights: Vec<f64> = points.iter().map(|_| random.unit() + 1e-9).collect();
+        let sum: f64 = weights.iter().sum();
+        let weights: Vec<f64> = weights.iter().map(|w| w / sum).collect();
+        let all = points.iter().zip(&weights);
+        (all.fold(DVec3::ZERO, |all, (&p, &w)| all + p * w), weights)
+    }
+
+    #[test]
+    fn no_viewer_of_a_simplex_sees_a_mean_of_corners_beyond_the_bound() {
+        let mut random = Pcg32::new(2007, 501);
+        let mut bounded = 0;
+        for case in 0..3_000 {
+            let mut vector = |size: f64| {
+                let mut axis = || (2.0 * random.unit() - 1.0) * size;
+                DVec3::new(axis(), axis(), axis())
+            };
+            let size = [0.05, 0.4, 1.0][case % 3];
+            // A polygon that turns around its middle, so that its triangles are not turned over.
+            let tilt = vector(0.3);
+            let n = 3 + case % 3;
+            let corners: Corners = (0..n)
+                .map(|i| {
+                    let turn = std::f64::consts::TAU * i as f64 / n as f64;
+                    let p = DVec3::new(libm::cos(turn), libm::sin(turn), 0.0) * size;
+                    let p = p + DVec3::Z * p.dot(tilt);
+                    [p, p + vector(size)]
+                })
+                .collect();
+            let eye = DVec3::Z * 2.5;
+            let cell: Vec<Vec<DVec3>> = (0..2)
+                .map(|_| (0..1 + case % 4).map(|_| eye + vector(1.0)).collect())
+                .collect();
+            let mut seen = Seen {
+                tangent2: 0.0,
+                triangle: 0,
+                point: DVec3::ZERO,
+                replacement: DVec3::ZERO,
+                viewpoint: DVec3::ZERO,
+            };
+            let first = first(&corners, &cell, &mut seen);
+            let wanted = Wanted {
+                claim2: 0.0,
+                known2: 0.0,
+            };
+            let refined = refine(&corners, &cell, wanted, &mut seen);
+            bounded += u32::from(refined < f64::INFINITY);
+            for _ in 0..20 {
+                for viewers in &cell {
+                    let eye = mixed(viewers, &mut random).0;
+                    for i in 2..n {
+                        let three = [corners[0], corners[i - 1], corners[i]];
+                        let (p, weights) = mixed(&three.map(|c| c[0]), &mut random);
+                        let s = (0..3).fold(DVec3::ZERO, |all, k| all + three[k][1] * weights[k]);
+                        let found = tangent2(p, s, eye);
+                        assert!(found <= first && found <= refined, "case {case}");
+                        assert!(
+                            found <= seen.tangent2 * NEAR2 || refined == f64::INFINITY,
+                            "case {case}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!(bounded > 1_000, "{bounded}");
+    }
 }

@@ -10,6 +10,7 @@ use super::{
     plan::{Plan, PlanCell, PlanFace},
     quad::texels,
     select::{Slab, select},
+    tree::PlanTree,
 };
 use crate::{
     Progress, Result,
@@ -66,7 +67,8 @@ pub fn billboards(
         .into_iter()
         .partition(|face| !face.is_wall() && face.area == DVec2::ZERO);
     let mut kept = plan.touched;
-    let (mut slabs, alone) = select(&faces, &scene.plan_cell, options, progress)?;
+    let tree = PlanTree::new(&faces);
+    let (mut slabs, alone) = select(&faces, &tree, &scene.plan_cell, options, progress)?;
     for number in alone {
         match own_plane(&faces[number as usize]) {
             Some((normal, rho)) => slabs.push(Slab {
@@ -80,7 +82,7 @@ pub fn billboards(
     let mut quads = Vec::new();
     let vertical: Vec<Option<Quad>> = slabs
         .par_iter()
-        .map(|slab| scene.vertical(slab, &faces))
+        .map(|slab| scene.vertical(slab, &faces, &tree))
         .collect();
     for (slab, quad) in slabs.iter().zip(vertical) {
         match quad {
@@ -123,7 +125,7 @@ fn own_plane(face: &PlanFace) -> Option<(DVec2, f64)> {
 
 impl Scene<'_> {
     /// The quad of a vertical plane; `None` where its faces are seen from the edge only.
-    fn vertical(&self, slab: &Slab, faces: &[PlanFace]) -> Option<Quad> {
+    fn vertical(&self, slab: &Slab, faces: &[PlanFace], tree: &PlanTree) -> Option<Quad> {
         let up = self.options.up;
         let towards = if self.plan_cell.somewhere().dot(slab.normal) < slab.rho {
             -slab.normal
@@ -154,7 +156,11 @@ impl Scene<'_> {
             let beside = along().all(|x| x < low) || along().all(|x| x > high);
             slab.faces.binary_search(&f).is_ok() || !beside && face.fits(&limits, slab.rho)
         };
-        quad.drawn = triangles(&mut (0..faces.len() as u32).filter(shown));
+        let mut near = tree.at(&limits, slab.rho);
+        near.extend_from_slice(&slab.faces);
+        near.sort_unstable();
+        near.dedup();
+        quad.drawn = triangles(&mut near.into_iter().filter(shown));
         Some(quad)
     }
 

@@ -15,6 +15,7 @@ mod plan;
 mod quad;
 mod select;
 mod sweep;
+mod tree;
 
 pub use cloud::{Cloud, billboards};
 pub use error::Displacement;

@@ -13,6 +13,7 @@ use super::{
     Options,
     plan::{Limits, PlanCell, PlanFace},
     sweep::{Stab, Sweep},
+    tree::PlanTree,
 };
 use crate::{Progress, Result, bound::planar::Interval, num::math};
 
@@ -33,6 +34,7 @@ const SAME_DIRECTION: f64 = 1e-5;
 
 struct Selection<'a> {
     faces: &'a [PlanFace],
+    tree: &'a PlanTree,
     cell: &'a PlanCell,
     options: &'a Options,
     /// What a face is worth; 0 once it is taken.
@@ -42,12 +44,14 @@ struct Selection<'a> {
 /// Planes for the faces, in the order in which they were chosen, and the numbers of the faces that no plane shares.
 pub(super) fn select(
     faces: &[PlanFace],
+    tree: &PlanTree,
     cell: &PlanCell,
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<(Vec<Slab>, Vec<u32>)> {
     let mut selection = Selection {
         faces,
+        tree,
         cell,
         options,
         values: values(faces),
@@ -98,8 +102,9 @@ pub(super) fn select(
     let alone: Vec<u32> = (0..faces.len() as u32)
         .filter(|&face| selection.values[face as usize] > 0)
         .collect();
-    let alone = selection.place(&mut slabs, alone);
-    selection.drop_superfluous(&mut slabs);
+    let homes = selection.homes(&slabs);
+    let alone = place(&mut slabs, &homes, alone);
+    drop_superfluous(&mut slabs, &homes);
     Ok((slabs, alone))
 }
 
@@ -173,7 +178,8 @@ impl Selection<'_> {
     /// The faces of some value that may be projected on a plane.
     fn valid(&self, normal: DVec2, rho: f64) -> Vec<u32> {
         let limits = self.limits(normal);
-        (0..self.faces.len() as u32)
+        self.tree
+            .at(&limits, rho)
             .into_par_iter()
             .filter(|&face| self.values[face as usize] > 0)
             .filter(|&face| self.faces[face as usize].fits(&limits, rho))
@@ -195,7 +201,13 @@ impl Selection<'_> {
         let mut step = std::f64::consts::PI / f64::from(self.options.directions) / 2.0;
         // Whatever a turn about the centre can reach.
         let limits = self.limits(normal);
-        let near: Vec<u32> = (0..self.faces.len() as u32)
+        let offsets = Interval {
+            min: stab.rho,
+            max: stab.rho,
+        };
+        let near: Vec<u32> = self
+            .tree
+            .near(&limits, offsets, (6.0 * step, centre))
             .into_par_iter()
             .filter(|&face| self.values[face as usize] > 0)
             .filter(|&face| {
@@ -234,39 +246,92 @@ impl Selection<'_> {
         (best.1, best.2)
     }
 
-    /// Gives faces that were left a place on planes that take them; those that find none are given back.
-    fn place(&self, slabs: &mut [Slab], faces: Vec<u32>) -> Vec<u32> {
-        let mut left = faces;
-        for slab in slabs {
-            let limits = self.limits(slab.normal);
-            let fits = |&face: &u32| self.faces[face as usize].fits(&limits, slab.rho);
-            let (found, rest): (Vec<u32>, Vec<u32>) = left.into_iter().partition(fits);
-            slab.faces.extend(found);
-            slab.faces.sort_unstable();
-            left = rest;
-        }
-        left
-    }
-
-    /// Drops planes whose faces all find a place on others, those with the fewest faces first.
-    fn drop_superfluous(&self, slabs: &mut Vec<Slab>) {
-        let mut order: Vec<usize> = (0..slabs.len()).collect();
-        order.sort_by_key(|&i| (slabs[i].faces.len(), std::cmp::Reverse(i)));
-        for i in order {
-            let faces = std::mem::take(&mut slabs[i].faces);
-            let mut others = slabs.clone();
-            others.retain(|other| !other.faces.is_empty());
-            if self.place(&mut others, faces.clone()).is_empty() {
-                let mut kept = others.into_iter();
-                for slab in slabs.iter_mut().filter(|slab| !slab.faces.is_empty()) {
-                    if let Some(other) = kept.next() {
-                        *slab = other;
-                    }
-                }
-            } else {
-                slabs[i].faces = faces;
+    /// For every face the planes that take it, in their order.
+    fn homes(&self, slabs: &[Slab]) -> Vec<Vec<u32>> {
+        let taken: Vec<Vec<u32>> = slabs
+            .par_iter()
+            .map(|slab| {
+                let limits = self.limits(slab.normal);
+                let mut near = self.tree.at(&limits, slab.rho);
+                near.retain(|&face| self.faces[face as usize].fits(&limits, slab.rho));
+                near
+            })
+            .collect();
+        let mut homes = vec![Vec::new(); self.faces.len()];
+        for (slab, faces) in (0_u32..).zip(taken) {
+            for face in faces {
+                homes[face as usize].push(slab);
             }
         }
-        slabs.retain(|slab| !slab.faces.is_empty());
+        homes
+    }
+}
+
+/// Gives faces that were left a place on the first plane that takes them; those that find none are given back.
+fn place(slabs: &mut [Slab], homes: &[Vec<u32>], faces: Vec<u32>) -> Vec<u32> {
+    let mut left = Vec::new();
+    for face in faces {
+        match homes[face as usize].first() {
+            Some(&slab) => slabs[slab as usize].faces.push(face),
+            None => left.push(face),
+        }
+    }
+    for slab in slabs {
+        slab.faces.sort_unstable();
+    }
+    left
+}
+
+/// Drops planes whose faces all find a place on others, those with the fewest faces first.
+fn drop_superfluous(slabs: &mut Vec<Slab>, homes: &[Vec<u32>]) {
+    let mut order: Vec<usize> = (0..slabs.len()).collect();
+    order.sort_by_key(|&i| (slabs[i].faces.len(), std::cmp::Reverse(i)));
+    for i in order {
+        let faces = std::mem::take(&mut slabs[i].faces);
+        let home = |face: &u32| {
+            let mut homes = homes[*face as usize].iter().map(|&slab| slab as usize);
+            homes.find(|&slab| !slabs[slab].faces.is_empty())
+        };
+        let found: Option<Vec<usize>> = faces.iter().map(home).collect();
+        match found {
+            Some(found) => {
+                for (&face, slab) in faces.iter().zip(found) {
+                    let others = &mut slabs[slab].faces;
+                    let at = others.partition_point(|&other| other < face);
+                    others.insert(at, face);
+                }
+            }
+            None => slabs[i].faces = faces,
+        }
+    }
+    slabs.retain(|slab| !slab.faces.is_empty());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_whose_faces_all_have_another_place_is_dropped_and_a_face_goes_to_the_first_one() {
+        let slab = |faces: &[u32]| Slab {
+            normal: DVec2::X,
+            rho: 0.0,
+            faces: faces.to_vec(),
+        };
+        let homes = [
+            vec![0, 2],
+            vec![0, 1, 2],
+            vec![1],
+            vec![1],
+            vec![2],
+            vec![1, 2],
+            vec![],
+        ];
+        let mut slabs = vec![slab(&[0, 1]), slab(&[2, 3]), slab(&[4])];
+        let left = place(&mut slabs, &homes, vec![5, 6]);
+        assert_eq!(left, [6]);
+        drop_superfluous(&mut slabs, &homes);
+        let faces: Vec<&[u32]> = slabs.iter().map(|slab| &slab.faces[..]).collect();
+        assert_eq!(faces, [&[1, 2, 3, 5][..], &[0, 4]]);
     }
 }

@@ -1,9 +1,9 @@
 //! Where textures, quads and the ground that is free of viewers end.
 
 use glam::DVec3;
-use lodmark::mesh::Mesh;
+use lodmark::mesh::{Mesh, generate};
 
-use super::{before_the_city, blocks, cloud, within};
+use super::{before_the_city, blocks, cloud, in_the_forest, within};
 
 #[test]
 fn a_filter_mixes_a_texel_with_nothing() {
@@ -56,4 +56,20 @@ fn a_wall_behind_the_plane_of_viewers_is_moved() {
     let cloud = cloud(&mesh, &before_the_city(), &within(1.0));
     assert_eq!(cloud.kept, [0, 1]);
     assert_eq!(cloud.quads.len(), 1);
+}
+
+#[test]
+fn a_wall_beside_a_plane_that_takes_it_too_is_drawn_there_against_cracks() {
+    let mesh = generate::trees(400, 120.0);
+    let cloud = cloud(&mesh, &in_the_forest(), &within(0.5));
+    let mut shared = 0;
+    for quad in cloud.quads.iter().filter(|q| !q.horizontal) {
+        assert!(
+            quad.replaces
+                .iter()
+                .all(|t| quad.drawn.binary_search(t).is_ok())
+        );
+        shared += quad.drawn.len() - quad.replaces.len();
+    }
+    assert!(shared > 0, "nothing is drawn twice");
 }

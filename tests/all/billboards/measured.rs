@@ -76,8 +76,7 @@ fn rise(v: DVec2, eye: f64, a: DVec3, b: DVec3) -> f64 {
 
 #[test]
 fn a_texel_of_a_pinned_scene_is_seen_too_far_from_what_it_shows() {
-    let wanted: u32 =
-        std::env::var("LODMARK_BOUND_CASES").map_or(20_000, |n| n.parse().expect("a number"));
+    let wanted = u32::try_from(crate::bound_cases(20_000)).expect("a number of viewpoints");
     for scene in scenes(wanted >= 100_000) {
         let mut random = Pcg32::new(2007, 401);
         let Scene { mesh, viewer, .. } = &scene;

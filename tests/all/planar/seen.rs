@@ -6,11 +6,8 @@ use lodmark::mesh::generate::Pcg32;
 /// How many cases of a kind, and the numbers they are drawn from: 10^3 and seed 2007 unless LODMARK_BOUND_CASES and
 /// LODMARK_SEED say otherwise.
 pub(super) fn cases(stream: u64) -> (u32, Pcg32) {
-    let number = |name: &str, default: u64| {
-        std::env::var(name).map_or(default, |v| v.parse().expect("a whole number"))
-    };
-    let count = u32::try_from(number("LODMARK_BOUND_CASES", 1000)).expect("a number of cases");
-    (count, Pcg32::new(number("LODMARK_SEED", 2007), stream))
+    let count = u32::try_from(crate::bound_cases(1_000)).expect("a number of cases");
+    (count, Pcg32::new(crate::bound_seed(), stream))
 }
 
 pub(super) fn between(random: &mut Pcg32, low: f64, high: f64) -> f64 {

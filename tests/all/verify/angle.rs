@@ -1,4 +1,6 @@
 //! Claims about angles for a view cell.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
 
 use glam::DVec3;
 use lodmark::{
@@ -15,7 +17,7 @@ use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::{
-    cases,
+    bounded,
     cli::{code, expect, folder, lodmark, put, stdout},
     shapes::{self, Random},
 };
@@ -146,7 +148,7 @@ fn without_a_record_only_the_nearest_in_angle_is_checked() {
 }
 
 proptest! {
-    #![proptest_config(cases(60))]
+    #![proptest_config(bounded(60))]
 
     #[test]
     fn no_viewer_sees_more_than_the_report_says(kind in 0_u8..4, seed: u64) {
@@ -240,7 +242,7 @@ fn pieces_that_leave_a_gap_or_lie_twice_are_found() {
 }
 
 proptest! {
-    #![proptest_config(cases(400))]
+    #![proptest_config(bounded(400))]
 
     #[test]
     fn no_bytes_make_the_reader_panic_or_accept_what_is_out_of_range(
@@ -304,6 +306,42 @@ fn viewpoints_on_and_in_the_mesh_are_judged_without_a_number_that_is_none() {
     for degrees in [-1.0, 90.0, f64::NAN] {
         let refused = angles(&mesh, &mesh, &on, degrees, None, 1, &Silent);
         assert_eq!(refused.expect_err("no angle").exit_code(), 2);
+    }
+}
+
+#[test]
+fn a_cell_that_meets_what_was_moved_breaks_every_claim_however_small_the_step() {
+    let triangle = |z: f64| {
+        let corners = [(-1.0, -1.0), (2.0, -0.5), (0.3, 1.5)];
+        let corners = corners.map(|(x, y)| DVec3::new(x, y, z));
+        Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid")
+    };
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let flat = triangle(0.0);
+    let all = [
+        ViewCell::point(at(0.1, 0.2, 0.0)),
+        ViewCell::segment([at(0.1, 0.3, -1.0), at(0.35, 0.2, 2.0)]),
+        ViewCell::segment([at(-0.5, -0.5, 0.0), at(7.0, 0.1, 3.0)]),
+        ViewCell::polygon(&[at(0.1, 0.1, -0.3), at(0.7, 0.2, -0.2), at(0.4, 0.3, 1.0)]),
+        ViewCell::cuboid(at(-0.17, -0.23, -0.31), at(0.11, 0.4, 0.29)),
+        ViewCell::cuboid(DVec3::splat(-5.1), DVec3::splat(4.3)),
+        ViewCell::plane(at(0.2, 0.0, 0.0), at(0.6, 0.0, 0.8)),
+        ViewCell::half_space(at(0.0, 0.0, -1.0), DVec3::NEG_Z),
+    ];
+    for step in [0.5, 1e-2, 1e-4, 1e-6] {
+        for (i, cell) in all.iter().enumerate() {
+            let cell = cell.as_ref().expect("a cell");
+            for low in [triangle(step), moved(&flat, 1, at(step, 0.3 * step, -step))] {
+                let report = check(&flat, &low, cell, 89.0);
+                assert!(!report.holds, "{step}, cell {i}: {report:?}");
+                assert!(
+                    report.worst.expect("sightings").angle_deg > 89.0
+                        && report.at_most_deg.is_none_or(|most| most > 89.0)
+                        && !report.proven,
+                    "{step}, cell {i}: {report:?}"
+                );
+            }
+        }
     }
 }
 

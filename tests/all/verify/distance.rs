@@ -1,4 +1,6 @@
 //! Claims about distances.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
 
 use glam::DVec3;
 use lodmark::{
@@ -12,7 +14,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
-    cases,
+    bounded,
     cli::{code, expect, folder, lodmark, put, stdout},
 };
 
@@ -216,7 +218,7 @@ fn slow_distance(p: DVec3, mesh: &Mesh) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(cases(60))]
+    #![proptest_config(bounded(60))]
 
     #[test]
     fn no_point_is_farther_than_proven_and_the_farthest_one_is_as_far_as_said(seed: u64) {
