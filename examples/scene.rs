@@ -1,11 +1,16 @@
-//! Writes one of the two scenes that billboards are measured on, of any size, and the view cell that goes with it:
+//! Writes one of the two scenes that billboards are measured on, of any size, and the view cell that goes with it; or
+//! any generated mesh:
 //!
 //! ```text
 //! cargo run --release --example scene -- city 20 21 city.obj city.json
 //! cargo run --release --example scene -- forest 10000 500 forest.obj forest.json
+//! cargo run --release --example scene -- names
+//! cargo run --release --example scene -- mesh engine engine.obj
+//! cargo run --release --example scene -- waves 920 waves.ply
 //! ```
 //! A city has so many buildings along a street and so many streets, its viewers are behind a plane at distance 6 of the
-//! first row. A forest has so many trees in a disc of some radius, its viewers are on a segment of length 20.
+//! first row. A forest has so many trees in a disc of some radius, its viewers are on a segment of length 20. `names`
+//! prints the names that `mesh` knows, one a line; waves are a height field of so many squares along each side.
 
 use std::{env, path::Path, process::ExitCode};
 
@@ -35,9 +40,30 @@ fn main() -> ExitCode {
 fn write(words: &[&str]) -> Result<()> {
     let usage = || {
         Error::Usage(
-            "expected: city COLUMNS ROWS MESH CELL, or forest TREES RADIUS MESH CELL".into(),
+            "expected: city COLUMNS ROWS MESH CELL, forest TREES RADIUS MESH CELL, names, mesh NAME MESH, or waves SIDE \
+             MESH"
+                .into(),
         )
     };
+    match *words {
+        ["names"] => {
+            #[allow(clippy::print_stdout, reason = "an example has no terminal of its own")]
+            for name in generate::NAMES {
+                println!("{name}");
+            }
+            return Ok(());
+        }
+        ["mesh", name, file] => {
+            let mesh = generate::by_name(name).ok_or_else(usage)?;
+            return io::write(Path::new(file), &mesh).map(drop);
+        }
+        ["waves", side, file] => {
+            let side: u32 = side.parse().map_err(|_| usage())?;
+            let mesh = generate::grid(side, side, generate::Height::Waves);
+            return io::write(Path::new(file), &mesh).map(drop);
+        }
+        _ => {}
+    }
     let [scene, first, second, mesh, cell] = words else {
         return Err(usage());
     };
