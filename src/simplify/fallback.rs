@@ -12,7 +12,8 @@ use serde::Serialize;
 use super::{Amount, MethodOptions, Options, Outcome, image::HeldOut};
 use crate::{Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
 
-/// Images pay where they leave at most this share of the RMS: views differ by about as much.
+/// Images pay where they leave less than this share of the RMS: views differ by about as much. Where no picture can tell
+/// the results apart, geometry decides.
 const PAYS: f64 = 0.99;
 
 /// Up to this share of what the quick continuation leaves, the memoryless method itself is run: it can be better.
@@ -46,6 +47,9 @@ impl Contest {
         images: Outcome,
         run: impl Fn(&Mesh, &Options) -> Result<Outcome>,
     ) -> Result<Outcome> {
+        if images.history.is_empty() {
+            return Ok(images);
+        }
         let ours = self.held_out.error(&images.mesh)?;
         let triangles = images.options.target.triangles(mesh.triangles().len())?;
         let options = memoryless(&images.options, Amount::Triangles(triangles as u64));
@@ -77,9 +81,9 @@ impl Contest {
     }
 }
 
-/// True where `ours` is at most this `share` of `theirs`, both as RMS.
+/// True where `ours` is below this `share` of `theirs`, both as RMS.
 fn below(ours: SquaredError, theirs: SquaredError, share: f64) -> bool {
-    ours.rms() <= share * theirs.rms()
+    ours.rms() < share * theirs.rms()
 }
 
 /// The memoryless method as its own defaults have it, to `target` and within the topology of `images`.
