@@ -1,13 +1,18 @@
-//! Writes a scene that results are measured on, of any size; those for billboards with the view cell that goes with it:
+//! Writes a scene that results are measured on: one of the two for billboards, of any size, with the view cell that goes
+//! with it, or any generated mesh:
 //!
 //! ```text
 //! cargo run --release --example scene -- engine 2 engine.ply
 //! cargo run --release --example scene -- motor 3 motor.ply
 //! cargo run --release --example scene -- city 20 21 city.obj city.json
 //! cargo run --release --example scene -- forest 10000 500 forest.obj forest.json
+//! cargo run --release --example scene -- names
+//! cargo run --release --example scene -- mesh engine engine.obj
+//! cargo run --release --example scene -- waves 920 waves.ply
 //! ```
 //! A city has so many buildings along a street and so many streets, its viewers are behind a plane at distance 6 of the
-//! first row. A forest has so many trees in a disc of some radius, its viewers are on a segment of length 20.
+//! first row. A forest has so many trees in a disc of some radius, its viewers are on a segment of length 20. `names`
+//! prints the names that `mesh` knows, one a line; waves are a height field of so many squares along each side.
 
 use std::{env, path::Path, process::ExitCode};
 
@@ -37,20 +42,33 @@ fn main() -> ExitCode {
 fn write(words: &[&str]) -> Result<()> {
     let usage = || {
         Error::Usage(
-            "expected: engine DETAIL MESH, motor DETAIL MESH, city COLUMNS ROWS MESH CELL, or forest TREES RADIUS MESH \
-             CELL"
+            "expected: city COLUMNS ROWS MESH CELL, forest TREES RADIUS MESH CELL, names, mesh NAME MESH, or \
+             engine DETAIL, motor DETAIL or waves SIDE MESH"
                 .into(),
         )
     };
-    if let [scene, detail, mesh] = words {
-        let detail = detail.parse().map_err(|_| usage())?;
-        let scene = match *scene {
-            "engine" => generate::engine(detail),
-            "motor" => generate::motor(detail),
-            _ => return Err(usage()),
-        };
-        io::write(Path::new(mesh), &scene)?;
-        return Ok(());
+    match *words {
+        ["names"] => {
+            #[allow(clippy::print_stdout, reason = "an example has no terminal of its own")]
+            for name in generate::NAMES {
+                println!("{name}");
+            }
+            return Ok(());
+        }
+        ["mesh", name, file] => {
+            let mesh = generate::by_name(name).ok_or_else(usage)?;
+            return io::write(Path::new(file), &mesh).map(drop);
+        }
+        [name @ ("engine" | "motor" | "waves"), size, file] => {
+            let size: u32 = size.parse().map_err(|_| usage())?;
+            let mesh = match name {
+                "engine" => generate::engine(size),
+                "motor" => generate::motor(size),
+                _ => generate::grid(size, size, generate::Height::Waves),
+            };
+            return io::write(Path::new(file), &mesh).map(drop);
+        }
+        _ => {}
     }
     let [scene, first, second, mesh, cell] = words else {
         return Err(usage());

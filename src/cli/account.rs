@@ -61,6 +61,18 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
     if let Some(rms) = outcome.error_rms {
         terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
     }
+    if let Some(c) = outcome.comparison {
+        terminal.say(&format!(
+            "RMS over views that drove nothing: {:.3} levels, by the memoryless method {:.3}{}",
+            c.image,
+            c.memoryless,
+            if c.fell_back {
+                "; the memoryless result is returned"
+            } else {
+                ""
+            }
+        ));
+    }
     if let Some(g) = outcome.guarantee {
         terminal.say(&format!(
             "guaranteed: no point of the result is farther than {:.6e} from the input{}",

@@ -15,7 +15,7 @@ use crate::{
     io,
     mesh::{self, content_sha256},
     simplify::{
-        Amount, MethodOptions, Options as RunOptions, Stop,
+        Amount, Comparison, MethodOptions, Options as RunOptions, Stop,
         image::{
             DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start,
         },
@@ -208,6 +208,9 @@ struct Summary<'a> {
     guarantee: Option<Guarantee>,
     #[serde(skip_serializing_if = "Option::is_none")]
     polish: &'a Option<PolishCounters>,
+    /// Of images and geometry, where they were close.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comparison: Option<Comparison>,
     content_sha256: String,
 }
 
@@ -433,6 +436,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         guarantee: outcome.guarantee,
         phases: &outcome.phases,
         polish: &outcome.polish,
+        comparison: outcome.comparison,
         content_sha256: content_sha256(&outcome.mesh),
     };
     report(common, "simplify", &outcome.options, &summary)?;

@@ -5,6 +5,7 @@
 //! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
 pub mod billboards;
+mod fallback;
 mod fan;
 pub mod image;
 pub mod memoryless;
@@ -20,6 +21,7 @@ pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
 pub use crate::collapse::{History, Replay};
+pub use fallback::Comparison;
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
 pub use replacement::{NearestTriangle, originals};

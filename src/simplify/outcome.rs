@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Options, image::PolishCounters, tolerance::Guarantee};
+use super::{Comparison, Options, image::PolishCounters, tolerance::Guarantee};
 use crate::{
     bound::correspondence::Correspondence,
     collapse::{Counters, History, Refusals},
@@ -62,6 +62,8 @@ pub struct Outcome {
     /// Root mean square of the luma differences over the driving views, in levels; only for methods that look at
     /// images. Never a measure of quality: the run has minimised it.
     pub error_rms: Option<f64>,
+    /// How the image-driven method compares with the memoryless one, where they were close.
+    pub comparison: Option<Comparison>,
     /// What is proved about the distance from the original; only for the method that keeps one.
     pub guarantee: Option<Guarantee>,
 }

@@ -2,9 +2,10 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
+    fallback::Contest,
     image::{
-        self, Deviation, EngineName, ImageDriven, ImageOptions, Limits, Pictures, PolishCounters,
-        Start,
+        self, Deviation, EngineName, HeldOut, ImageDriven, ImageOptions, Limits, Pictures,
+        PolishCounters, Start,
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
@@ -121,11 +122,18 @@ fn in_pool(
             progress,
         )?;
     }
-    run.finish(match end {
+    let contest = run.contest.take();
+    let outcome = run.finish(match end {
         End::TargetReached => Stop::TargetReached,
         End::ErrorLimit => Stop::ErrorLimit,
         End::NoLegalCollapse { blocked } => Stop::NoLegalCollapse { refusals: blocked },
-    })
+    })?;
+    match contest {
+        Some(contest) => contest.decide(mesh, outcome, |mesh, options| {
+            in_pool(mesh, options, None, progress)
+        }),
+        None => Ok(outcome),
+    }
 }
 
 /// A run between its phases.
@@ -140,6 +148,7 @@ struct Run<'a> {
     error_rms: Option<f64>,
     guarantee: Option<Guarantee>,
     correspondence: Option<Correspondence>,
+    contest: Option<Contest>,
     progress: &'a dyn Progress,
 }
 
@@ -157,6 +166,7 @@ impl<'a> Run<'a> {
             error_rms: None,
             guarantee: None,
             correspondence: None,
+            contest: None,
             progress,
         }
     }
@@ -247,6 +257,12 @@ impl<'a> Run<'a> {
             start,
             ..own.clone()
         });
+        if own.is_contested(self.options.error_rms.is_none()) {
+            self.contest = Some(Contest {
+                held_out: HeldOut::new(&scene, &original, frame, own)?,
+                start: self.live.to_mesh().map_err(Error::Internal)?,
+            });
+        }
         let before = (self.live.triangle_count(), Counters::default());
         let (end, method) = self.phase("image", method, target, before)?;
         let mut pictures = method.into_pictures();
@@ -348,6 +364,7 @@ impl<'a> Run<'a> {
             error_rms: self.error_rms,
             guarantee: self.guarantee,
             correspondence: self.correspondence,
+            comparison: None,
         })
     }
 }

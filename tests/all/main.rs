@@ -11,6 +11,7 @@ mod compare;
 mod correspondence;
 mod embree;
 mod envelope;
+mod fallback;
 mod findings;
 mod generate;
 mod golden;

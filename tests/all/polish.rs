@@ -160,6 +160,8 @@ fn options(triangles: u64, shading: DrivingShading) -> Options {
             cameras_every: 2,
             deviation_weight: 0.2,
         },
+        // Polishing is looked at, whatever becomes of its result.
+        fall_back: false,
         ..Preset::Default.options()
     });
     options

@@ -73,6 +73,8 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
         samples: 1,
         start: Start::Input,
         polish: Polish::default(),
+        // What pictures do is recorded, whatever geometry would do.
+        fall_back: false,
         ..ImageOptions::default()
     };
     let gouraud = ImageOptions {

@@ -10,6 +10,7 @@
 mod change;
 mod cost;
 mod deviation;
+mod held_out;
 mod moves;
 mod options;
 mod pictures;
@@ -19,6 +20,7 @@ mod preset;
 pub use change::ImageChange;
 pub use cost::ImageError;
 pub use deviation::Deviation;
+pub use held_out::HeldOut;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use pictures::{PictureScratch, Pictures};
 pub use polish::{Limits, Polish, PolishCounters, polish};

@@ -161,6 +161,10 @@ pub struct ImageOptions {
     /// What follows the last collapse.
     #[serde(default)]
     pub polish: Polish,
+    /// Return the memoryless method's result where it looks better in views that drove neither. Only where nothing but
+    /// a number of triangles or a ratio limits the run, and views from all around show the outside.
+    #[serde(default)]
+    pub fall_back: bool,
 }
 
 impl Default for ImageOptions {
@@ -198,6 +202,13 @@ impl ImageOptions {
             }
         }
         Ok(())
+    }
+
+    /// Whether the result is held against the memoryless method's; `only_counted`: nothing limits the run but a number
+    /// of triangles.
+    pub(in super::super) fn is_contested(&self, only_counted: bool) -> bool {
+        let around = !matches!(self.views, ViewsName::File(_)) && self.interior_views == 0;
+        self.fall_back && only_counted && around
     }
 
     /// The driving views onto `original`, which is in units of `frame`, turned as a whole for the given `round`; 0 is

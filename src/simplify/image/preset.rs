@@ -48,6 +48,7 @@ impl Preset {
             samples: 2,
             start: Start::Times(start),
             polish,
+            fall_back: true,
             ..Self::Paper.options()
         };
         let polish = |sweeps, cameras_every, deviation_weight| Polish {
@@ -69,6 +70,7 @@ impl Preset {
                 engine: super::EngineName::default(),
                 placement: super::super::memoryless::MemorylessOptions::default(),
                 polish: Polish::default(),
+                fall_back: false,
             },
             Self::Fast => recipe(30, 1, 1.35, polish(1, 0, 0.5)),
             Self::Default => recipe(42, 4, 1.7, polish(2, 0, 0.5)),

@@ -1,0 +1,100 @@
+//! Images may not do worse than geometry.
+//!
+//! The image-driven method orders collapses and moves vertices by pictures of some size. Where those cannot resolve what
+//! a mesh still has (many triangles left on a smooth surface, differences below one level of luma), it fits their noise,
+//! and the memoryless method, which knows nothing of noise, looks better. So both results are compared in views that
+//! drove neither, [`HeldOut`], and the memoryless one is returned where images did not pay: with the very bits that its
+//! own run has. To be sure of a case that is plainly better costs little: the memoryless method only continues from the
+//! mesh that images started from, which is as good as its own result within a few percent.
+
+use serde::Serialize;
+
+use super::{Amount, MethodOptions, Options, Outcome, image::HeldOut};
+use crate::{Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
+
+/// Images pay where they leave less than this share of the RMS: views differ by about as much. Where no picture can tell
+/// the results apart, geometry decides.
+const PAYS: f64 = 0.99;
+
+/// Up to this share of what the quick continuation leaves, the memoryless method itself is run: it can be better.
+const PLAIN: f64 = 0.95;
+
+/// What images and geometry made of one target, by root mean square of the luma differences in views that drove neither.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Comparison {
+    /// Of the image-driven result, in levels.
+    pub image: f64,
+    /// Of the memoryless method's, in levels.
+    pub memoryless: f64,
+    /// Whether the latter was returned.
+    pub fell_back: bool,
+}
+
+/// What the comparison needs of an image-driven run.
+#[derive(Debug)]
+pub(super) struct Contest {
+    pub(super) held_out: HeldOut,
+    /// The mesh that images started from, in file units.
+    pub(super) start: Mesh,
+}
+
+impl Contest {
+    /// The better one of `images`, a result for `mesh`, and what `run` makes of a mesh by the memoryless method.
+    pub(super) fn decide(
+        &self,
+        mesh: &Mesh,
+        images: Outcome,
+        run: impl Fn(&Mesh, &Options) -> Result<Outcome>,
+    ) -> Result<Outcome> {
+        if images.history.is_empty() {
+            return Ok(images);
+        }
+        let ours = self.held_out.error(&images.mesh)?;
+        let triangles = images.options.target.triangles(mesh.triangles().len())?;
+        let options = memoryless(&images.options, Amount::Triangles(triangles as u64));
+        let quick = run(&self.start, &options)?;
+        if below(ours, self.held_out.error(&quick.mesh)?, PLAIN) {
+            return Ok(images);
+        }
+        let rival = run(mesh, &options)?;
+        let theirs = self.held_out.error(&rival.mesh)?;
+        let as_small = rival.mesh.triangles().len() <= images.mesh.triangles().len();
+        let fell_back = as_small && !below(ours, theirs, PAYS);
+        let comparison = Comparison {
+            image: ours.rms(),
+            memoryless: theirs.rms(),
+            fell_back,
+        };
+        let mut outcome = images;
+        if fell_back {
+            outcome.mesh = rival.mesh;
+            outcome.history = rival.history;
+            outcome.stop = rival.stop;
+            outcome.phases = rival.phases;
+            // They describe a mesh that is not returned.
+            outcome.polish = None;
+            outcome.error_rms = None;
+        }
+        outcome.comparison = Some(comparison);
+        Ok(outcome)
+    }
+}
+
+/// True where `ours` is below this `share` of `theirs`, both as RMS.
+fn below(ours: SquaredError, theirs: SquaredError, share: f64) -> bool {
+    ours.rms() < share * theirs.rms()
+}
+
+/// The memoryless method as its own defaults have it, to `target` and within the topology of `images`.
+fn memoryless(images: &Options, target: Amount) -> Options {
+    let mut options = Options::memoryless(target);
+    options.rules = Rules {
+        topology: images.rules.topology,
+        ..options.rules
+    };
+    if let MethodOptions::Image(own) = &images.method {
+        options.method = MethodOptions::Memoryless(own.placement);
+    }
+    options
+}

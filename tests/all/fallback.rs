@@ -1,0 +1,115 @@
+//! Images that do worse than geometry: the run returns what the memoryless method makes.
+
+use lodmark::{
+    Silent,
+    mesh::{Mesh, canonical, content_sha256, generate},
+    simplify::{
+        Amount, MethodOptions, Options, Outcome, Replay,
+        image::{DrivingShading, ImageOptions, Size, Start},
+        simplify,
+    },
+};
+
+fn sphere() -> Mesh {
+    canonical(&generate::icosphere(3)).mesh
+}
+
+/// Pictures of a few pixels, polished at length: nothing but their noise is fitted.
+fn blind(triangles: u64) -> Options {
+    let mut options = Options::image(Amount::Triangles(triangles));
+    let mut own = ImageOptions {
+        size: Size::Pixels(8),
+        samples: 1,
+        shading: DrivingShading::Gouraud,
+        ..ImageOptions::default()
+    };
+    own.polish.sweeps = 4;
+    own.polish.deviation_weight = 0.0;
+    options.method = MethodOptions::Image(own);
+    options
+}
+
+fn with(options: &Options, change: impl FnOnce(&mut ImageOptions)) -> Options {
+    let mut options = options.clone();
+    if let MethodOptions::Image(own) = &mut options.method {
+        change(own);
+    }
+    options
+}
+
+fn run(mesh: &Mesh, options: &Options) -> Outcome {
+    simplify(mesh, options, &Silent).expect("runs")
+}
+
+#[test]
+fn where_images_fit_noise_the_memoryless_result_is_returned_to_the_bit() {
+    let mesh = sphere();
+    let outcome = run(&mesh, &blind(640));
+    let comparison = outcome.comparison.expect("compared");
+    assert!(comparison.fell_back, "{comparison:?}");
+    assert!(comparison.image > comparison.memoryless * 0.99);
+    let geometry = run(&mesh, &Options::memoryless(Amount::Triangles(640)));
+    assert_eq!(
+        content_sha256(&outcome.mesh),
+        content_sha256(&geometry.mesh)
+    );
+    // What describes the mesh that was thrown away is gone with it.
+    assert_eq!((outcome.error_rms, &outcome.polish), (None, &None));
+    let mut replay = Replay::new(&mesh, &outcome.history).expect("its mesh");
+    replay.seek(640).expect("replays");
+    let replayed = replay.live().to_mesh().expect("a mesh");
+    assert_eq!(content_sha256(&replayed), content_sha256(&outcome.mesh));
+}
+
+#[test]
+fn whoever_wants_the_image_driven_result_gets_it() {
+    let mesh = sphere();
+    let options = with(&blind(640), |own| own.fall_back = false);
+    let outcome = run(&mesh, &options);
+    assert_eq!(outcome.comparison, None);
+    assert!(outcome.polish.is_some());
+    let geometry = run(&mesh, &Options::memoryless(Amount::Triangles(640)));
+    assert_ne!(
+        content_sha256(&outcome.mesh),
+        content_sha256(&geometry.mesh)
+    );
+}
+
+#[test]
+fn where_images_pay_nothing_changes() {
+    let mesh = canonical(&generate::interlocking_tori(24, 12)).mesh;
+    let options = Options::image(Amount::Triangles(200));
+    let kept = run(&mesh, &options);
+    assert!(kept.comparison.is_none_or(|c| !c.fell_back));
+    let free = run(&mesh, &with(&options, |own| own.fall_back = false));
+    assert_eq!(content_sha256(&kept.mesh), content_sha256(&free.mesh));
+    assert_eq!(kept.error_rms, free.error_rms);
+}
+
+#[test]
+fn nothing_is_compared_where_more_than_a_number_limits_the_run() {
+    let mesh = sphere();
+    let limited = Options {
+        error_rms: Some(200.0),
+        ..blind(640)
+    };
+    let inside = with(&blind(640), |own| own.interior_views = 1);
+    for options in [limited, inside] {
+        assert_eq!(run(&mesh, &options).comparison, None);
+    }
+}
+
+/// A ratio is one of the input, not of the mesh that images start from.
+#[test]
+fn a_ratio_means_the_same_to_both_methods() {
+    let mesh = sphere();
+    let start = |own: &mut ImageOptions| own.start = Start::Triangles(800);
+    let by_count = with(&blind(640), start);
+    let by_ratio = Options {
+        target: Amount::Ratio(0.5),
+        ..by_count.clone()
+    };
+    let [count, ratio] = [by_count, by_ratio].map(|options| run(&mesh, &options));
+    assert_eq!(count.comparison, ratio.comparison);
+    assert_eq!(content_sha256(&count.mesh), content_sha256(&ratio.mesh));
+}
