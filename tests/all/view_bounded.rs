@@ -142,7 +142,7 @@ fn a_mesh_far_from_the_origin_keeps_its_bound_to_the_last_digits() {
                     let (p, s) = (at(from, corner.source.get()), at(to, corner.target.get()));
                     for &eye in &eyes {
                         let (p, s) = (p - eye, s - eye);
-                        let seen = p.cross(s).length().atan2(p.dot(s)).to_degrees();
+                        let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
                         assert!(seen <= degrees * (1.0 + 1e-6), "cell {i}: {seen}");
                     }
                 }

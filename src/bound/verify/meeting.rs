@@ -8,9 +8,9 @@ use crate::num::math::length;
 /// How far from the meeting a point is looked at, in displacements: near enough for angles next to 90 degrees.
 const NEAR: f64 = 1e-6;
 
-/// The weights of a point of a triangle that is in the hull of one to four viewpoints; `None` where there is none, up to
-/// rounding, and where all lie in one plane.
-pub(super) fn meeting(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<[f64; 3]> {
+/// The weights of a point of a triangle, and a viewpoint in the hull of one to four that is there up to rounding; `None`
+/// where there is none. Both are where they are said to be even where a needle makes them lie apart.
+fn meeting(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<([f64; 3], DVec3)> {
     let [a, b, c] = triangle;
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
@@ -58,16 +58,20 @@ pub(super) fn meeting(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<[f64; 3
     };
     let weights = of(point);
     let inside = weights.iter().all(|w| w.is_finite() && *w >= -1e-12);
-    inside.then(|| weights.map(|w| w.max(0.0)))
+    let sum: f64 = weights.iter().map(|w| w.max(0.0)).sum();
+    inside.then(|| (weights.map(|w| w.max(0.0) / sum), point))
 }
 
-/// A point in the middle of what a triangle has inside a tetrahedron.
+/// A point of a tetrahedron in the middle of what a triangle has inside.
 fn middle_inside(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<DVec3> {
     let mut left = triangle.to_vec();
     for k in 0..4 {
         let [apex, a, b, c] = [0, 1, 2, 3].map(|i| viewers[(k + i) % 4]);
         let normal = (b - a).cross(c - a);
         let up = (apex - a).dot(normal);
+        if up == 0.0 {
+            return None;
+        }
         let depth = |p: DVec3| (p - a).dot(normal) * up;
         let mut cut = Vec::with_capacity(left.len() + 1);
         for (i, &p) in left.iter().enumerate() {
@@ -83,7 +87,17 @@ fn middle_inside(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<DVec3> {
         left = cut;
     }
     let sum = left.iter().fold(DVec3::ZERO, |sum, &p| sum + p);
-    (!left.is_empty()).then(|| sum / left.len() as f64)
+    let middle = sum / left.len() as f64;
+    let mut shares = [0.0; 4];
+    for (k, share) in shares.iter_mut().enumerate() {
+        let [apex, a, b, c] = [0, 1, 2, 3].map(|i| viewers[(k + i) % 4]);
+        let normal = (b - a).cross(c - a);
+        *share = ((middle - a).dot(normal) / (apex - a).dot(normal)).max(0.0);
+    }
+    let all: f64 = shares.iter().sum();
+    let hull = shares.iter().zip(viewers);
+    let point = hull.fold(DVec3::ZERO, |sum, (&share, &v)| sum + v * (share / all));
+    (!left.is_empty() && point.is_finite()).then_some(point)
 }
 
 /// Points next to the meeting of a triangle with viewpoints, what stands for them, and the viewpoint there.
@@ -91,8 +105,8 @@ pub(super) fn sights_at_meeting(
     corners: [[DVec3; 2]; 3],
     viewers: &[DVec3],
 ) -> impl Iterator<Item = ([DVec3; 2], DVec3)> {
-    let weights = meeting(corners.map(|[p, _]| p), viewers);
-    weights.into_iter().flat_map(move |weights| {
+    let found = meeting(corners.map(|[p, _]| p), viewers);
+    found.into_iter().flat_map(move |(weights, viewpoint)| {
         let mixed = |k: usize| {
             corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]
         };
@@ -103,6 +117,6 @@ pub(super) fn sights_at_meeting(
                 let t = (step / length(corner[0] - at[0])).min(1.0);
                 [0, 1].map(|k| at[k] + (corner[k] - at[k]) * t)
             }))
-            .map(move |pair| (pair, at[0]))
+            .map(move |pair| (pair, viewpoint))
     })
 }

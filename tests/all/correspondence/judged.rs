@@ -12,10 +12,13 @@ use proptest::prelude::*;
 use super::{Class, at, ring};
 use crate::{bounded, shapes::Random};
 
+/// What was asked about: triangle, corners, and what stands for these.
+type Heard = Vec<(u32, Vec<DVec3>, Vec<DVec3>)>;
+
 /// Denies the piece that comes as number `wrong`, and writes down all.
 struct Judge {
     wrong: usize,
-    heard: RefCell<Vec<(u32, Vec<DVec3>, Vec<DVec3>)>>,
+    heard: RefCell<Heard>,
 }
 
 impl Allowance for Judge {
@@ -30,11 +33,7 @@ impl Allowance for Judge {
     }
 }
 
-fn judge(
-    map: &Correspondence,
-    fan: &Fan,
-    wrong: usize,
-) -> (Answer, Vec<(u32, Vec<DVec3>, Vec<DVec3>)>) {
+fn judge(map: &Correspondence, fan: &Fan, wrong: usize) -> (Answer, Heard) {
     let judge = Judge {
         wrong,
         heard: RefCell::default(),
@@ -148,7 +147,7 @@ proptest! {
                 let (p, s) = (at(triangle, place), at(low_corners, place));
                 for &eye in &eyes {
                     let (p, s) = (p - eye, s - eye);
-                    let seen = p.cross(s).length().atan2(p.dot(s)).to_degrees();
+                    let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
                     prop_assert!(seen <= degrees * (1.0 + 1e-9), "{seen} from {eye}");
                 }
             }
