@@ -191,12 +191,13 @@ fn pierces(cap: [DVec3; 3], a: DVec3, v: DVec3) -> Option<f64> {
     Some(inside[0].min(inside[1]).min(inside[2]))
 }
 
-/// The best of [`pierces`] over a segment: sampled, then refined around the best sample.
+/// The best of [`pierces`] over a segment: sampled, then refined around the best sample. Depths have one peak along a
+/// segment, because the places that pierce by some depth are convex; with a needle for a cap it is as narrow as 10^-5.
 fn deepest(cap: [DVec3; 3], [p, q]: [DVec3; 2], v: DVec3) -> f64 {
     let at = |t: f64| pierces(cap, p + (q - p) * t, v).unwrap_or(f64::NEG_INFINITY);
     let (mut best, mut where_) = (f64::NEG_INFINITY, 0.0);
     let (mut low, mut high) = (0.0, 1.0);
-    for round in 0..4 {
+    for round in 0..16 {
         let steps = if round == 0 { 40 } else { 10 };
         for i in 0..=steps {
             let t = low + (high - low) * f64::from(i) / f64::from(steps);
