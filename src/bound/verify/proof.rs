@@ -3,17 +3,21 @@
 //! The distance to one facet is a convex function, so that over a triangle it is largest at a corner; and no distance
 //! changes faster than the point moves. A part of the triangle is settled where one facet is near enough to all three
 //! corners, or where the distance at its centroid plus its radius is small enough. Where neither holds it is halved
-//! across its longest side, until a centroid is found to be too far away, or the part is small.
+//! across its longest side, until a centroid is found to be too far away, or the part is small. Where the distance comes
+//! next to the claim between two facets, small parts are not small enough: a triangle of which nothing is known to be
+//! too far away gets a second round, in which what is left of it is halved until its size is less than the slack of
+//! the claim.
 
 use glam::DVec3;
 
 use super::nearest::Facets;
 use crate::num::math::{length, sqrt};
 
-/// Parts that one triangle may be cut into.
-const PARTS: usize = 1 << 15;
-/// Parts with sides of no more than this share of the claim are not cut any more.
-const FINEST: f64 = 1.0 / 256.0;
+/// For each round: how often one triangle may be cut, and the share of the claim at which sides are not cut any more.
+const ROUNDS: [(usize, f64); 2] = [
+    (1 << 15, 1.0 / 256.0),
+    (1 << 12, 1.0 / (1_u64 << 30) as f64),
+];
 
 /// What is known about a triangle, in frame units.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +33,9 @@ pub(super) struct Finding {
     pub(super) near: u32,
 }
 
+/// A part of a triangle and a bound of its distance.
+type Part = ([DVec3; 3], f64);
+
 /// Settles whether all of a triangle is within `claim` of the surface.
 pub(super) fn settle(surface: &Facets, corners: [DVec3; 3], claim: f64, guess: u32) -> Finding {
     let mut finding = Finding {
@@ -38,45 +45,68 @@ pub(super) fn settle(surface: &Facets, corners: [DVec3; 3], claim: f64, guess: u
         undecided: 0.0,
         near: guess,
     };
-    let mut parts = vec![corners];
-    let mut cuts = 0;
-    while let Some(part) = parts.pop() {
-        let [a, b, c] = part;
-        let middle = (a + b + c) / 3.0;
-        let (squared, near) = surface.nearest(middle, finding.near, 0.0);
-        finding.near = near;
-        let distance = sqrt(squared);
-        if distance > finding.largest {
-            (finding.largest, finding.point) = (distance, middle);
+    let (mut open, mut left) = (vec![(corners, f64::INFINITY)], Vec::new());
+    for (cuts, finest) in ROUNDS {
+        finding.divide(surface, claim, (cuts, finest * claim), &mut open, &mut left);
+        if finding.largest > claim {
+            break;
         }
-        let facet = surface.facet(near);
-        let corner = part.map(|p| facet.squared(p));
-        let one_facet = sqrt(corner[0].max(corner[1]).max(corner[2]));
-        let radius = part.map(|p| length(p - middle));
-        let radius = radius[0].max(radius[1]).max(radius[2]);
-        let bound = one_facet.min(distance + radius);
-        if bound <= claim {
-            finding.at_most = finding.at_most.max(bound);
-            continue;
-        }
-        let sides = [length(b - a), length(c - b), length(a - c)];
-        let longest = sides[0].max(sides[1]).max(sides[2]);
-        if distance > claim || longest <= FINEST * claim || cuts == PARTS || longest <= 1e-12 {
-            finding.at_most = finding.at_most.max(bound);
-            finding.undecided += length((b - a).cross(c - a));
-            continue;
-        }
-        cuts += 1;
-        let [p, q, r] = if sides[0] >= longest {
-            [a, b, c]
-        } else if sides[1] >= longest {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        };
-        let half = (p + q) * 0.5;
-        parts.push([p, half, r]);
-        parts.push([half, q, r]);
+        open.append(&mut left);
+    }
+    for ([a, b, c], bound) in open.into_iter().chain(left) {
+        finding.at_most = finding.at_most.max(bound);
+        finding.undecided += length((b - a).cross(c - a));
     }
     finding
+}
+
+impl Finding {
+    /// Divides the parts in `open`; those for which nothing is certain come into `left`.
+    fn divide(
+        &mut self,
+        surface: &Facets,
+        claim: f64,
+        (most, finest): (usize, f64),
+        open: &mut Vec<Part>,
+        left: &mut Vec<Part>,
+    ) {
+        let mut cuts = 0;
+        while let Some((part, known)) = open.pop() {
+            let [a, b, c] = part;
+            let middle = (a + b + c) / 3.0;
+            let (squared, near) = surface.nearest(middle, self.near, 0.0);
+            self.near = near;
+            let distance = sqrt(squared);
+            if distance > self.largest {
+                (self.largest, self.point) = (distance, middle);
+            }
+            let facet = surface.facet(near);
+            let corner = part.map(|p| facet.squared(p));
+            let one_facet = sqrt(corner[0].max(corner[1]).max(corner[2]));
+            let radius = part.map(|p| length(p - middle));
+            let radius = radius[0].max(radius[1]).max(radius[2]);
+            let bound = one_facet.min(distance + radius).min(known);
+            if bound <= claim {
+                self.at_most = self.at_most.max(bound);
+                continue;
+            }
+            let sides = [length(b - a), length(c - b), length(a - c)];
+            let longest = sides[0].max(sides[1]).max(sides[2]);
+            if distance > claim || longest <= finest || cuts == most || longest <= 1e-12 {
+                left.push((part, bound));
+                continue;
+            }
+            cuts += 1;
+            let [p, q, r] = if sides[0] >= longest {
+                [a, b, c]
+            } else if sides[1] >= longest {
+                [b, c, a]
+            } else {
+                [c, a, b]
+            };
+            let half = (p + q) * 0.5;
+            open.push(([p, half, r], bound));
+            open.push(([half, q, r], bound));
+        }
+    }
 }

@@ -117,6 +117,44 @@ fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
 }
 
 #[test]
+fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() {
+    // Two walls that end in points, and a sheet between these: along x = 0 both are as far, at the upper side farthest.
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let wall = |x: f64| {
+        [
+            p(x, 0.0, 0.0),
+            p(3.0 * x, 2.0, -1.0),
+            p(3.0 * x, -2.0, -1.0),
+        ]
+    };
+    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+    let walls = walls.expect("valid");
+    for (i, (left, right)) in [(-0.5, 0.37), (-0.123, 0.456), (-0.31, 0.2)]
+        .iter()
+        .enumerate()
+    {
+        let upper = 0.3 + 0.1 * i as f64;
+        let corners = vec![
+            p(*left, upper, 0.0),
+            p(0.05, -0.1, 0.0),
+            p(*right, upper, 0.0),
+        ];
+        let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+        let most = libm::sqrt(1.0 + upper * upper);
+        for share in [1e-3, 1e-5, 1e-7] {
+            let claim = Claim::Absolute(most * (1.0 + share));
+            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            assert!(found.proven, "{share}: {found:?}");
+            let proven = found.directions[0].proven;
+            assert!(proven >= most * (1.0 - 1e-12), "{proven} below {most}");
+            let claim = Claim::Absolute(most * (1.0 - share));
+            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            assert!(!found.proven, "{share}: {found:?}");
+        }
+    }
+}
+
+#[test]
 fn needles_points_and_segments_are_surfaces_too() {
     let positions = vec![
         DVec3::ZERO,
