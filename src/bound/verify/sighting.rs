@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::sight::tangent2;
+
 /// A sighting in frame units.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
@@ -10,6 +12,22 @@ pub(super) struct Seen {
     pub(super) point: DVec3,
     pub(super) replacement: DVec3,
     pub(super) viewpoint: DVec3,
+}
+
+impl Seen {
+    /// Looks at another pair of points of the same triangle: the larger angle stays.
+    pub(super) fn look(&mut self, point: DVec3, replacement: DVec3, viewpoint: DVec3) {
+        let tangent2 = tangent2(point, replacement, viewpoint);
+        if tangent2 > self.tangent2 {
+            *self = Self {
+                tangent2,
+                point,
+                replacement,
+                viewpoint,
+                ..*self
+            };
+        }
+    }
 }
 
 #[derive(Default)]

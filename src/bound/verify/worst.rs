@@ -15,7 +15,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec3;
 
-use super::{meeting::sights_at_meeting, sight::tangent2, sighting::Seen};
+use super::{meeting::sights_at_meeting, sighting::Seen};
 
 /// How near an upper bound must come to what is attained: a share of the tangent.
 const NEAR: f64 = 0.002;
@@ -164,25 +164,13 @@ pub(super) fn refine(
 /// Measures the corners and their mean from the corners of a simplex of viewpoints and its middle.
 fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
     let middle = mean(viewers, |v| *v);
-    let mut see = |point, replacement, viewpoint| {
-        let tangent2 = tangent2(point, replacement, viewpoint);
-        if tangent2 > seen.tangent2 {
-            *seen = Seen {
-                tangent2,
-                point,
-                replacement,
-                viewpoint,
-                ..*seen
-            };
-        }
-    };
     for &viewpoint in viewers.iter().chain([&middle]) {
         for &[p, s] in corners {
-            see(p, s, viewpoint);
+            seen.look(p, s, viewpoint);
         }
     }
     if corners.len() <= 3 {
-        see(mean(corners, |c| c[0]), mean(corners, |c| c[1]), middle);
+        seen.look(mean(corners, |c| c[0]), mean(corners, |c| c[1]), middle);
     }
 }
 
@@ -193,16 +181,7 @@ fn look_at_meeting(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
         let turned = three.map(|[p, s]| [s, p]);
         let turned = sights_at_meeting(turned, viewers).map(|([s, p], v)| ([p, s], v));
         for ([point, replacement], viewpoint) in sights_at_meeting(three, viewers).chain(turned) {
-            let tangent2 = tangent2(point, replacement, viewpoint);
-            if tangent2 > seen.tangent2 {
-                *seen = Seen {
-                    tangent2,
-                    point,
-                    replacement,
-                    viewpoint,
-                    ..*seen
-                };
-            }
+            seen.look(point, replacement, viewpoint);
         }
     }
 }
@@ -270,7 +249,7 @@ fn halves<T: Copy>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::generate::Pcg32;
+    use crate::{bound::verify::sight::tangent2, mesh::generate::Pcg32};
 
     fn mixed(points: &[DVec3], random: &mut Pcg32) -> (DVec3, Vec<f64>) {
         let weights: Vec<f64> = points.iter().map(|_| random.unit() + 1e-9).collect();
