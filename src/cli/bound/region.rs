@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::{
     Error, Result,
     bound::{
-        cell::{ViewCell, file},
+        cell::{Shape, ViewCell, file},
         planar::Aperture,
         region::{self, Profile},
     },
@@ -21,7 +21,8 @@ use crate::{
 #[command(after_help = "\
 A .svg shows the region in a plane through the first point: that of point and cell for a segment or a line, one that \
 holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl) is the region's surface. \
-Where the region has no end it is cut off at --reach.")]
+Where the region has no end it is cut off at --reach. The cell is drawn in red, of one without an end what is in the \
+picture.")]
 pub(in crate::cli) struct Options {
     /// Figure (.svg) or mesh (.obj, .ply, .stl)
     #[arg(value_name = "OUT")]
@@ -126,16 +127,62 @@ impl Options {
             .iter()
             .map(|&p| region::profile(cell, p, normal, aperture, directions, self.reach))
             .collect::<Result<_>>()?;
-        Ok(svg(
-            &self.points,
-            &profiles,
-            cell.corners().unwrap_or_default(),
-        ))
+        Ok(svg(&self.points, &profiles, cell))
     }
 }
 
-/// Outlines with their points, and the corners of the cell with all lines between them, seen along the normal.
-fn svg(points: &[DVec3], profiles: &[Profile], corners: &[DVec3]) -> String {
+/// An endless cell in a figure.
+struct Trace {
+    /// The nearest place to the first point.
+    foot: [f64; 2],
+    /// Along the line, or the border of a half-space.
+    along: [f64; 2],
+    /// Where viewers are beside the border.
+    inward: Option<[f64; 2]>,
+}
+
+impl Trace {
+    /// A line as it is seen along the normal, a plane or half-space where the plane of the figure cuts its border; `None`
+    /// where it does not or only far away, or the line is seen end on, up to two degrees.
+    fn of(cell: &ViewCell, origin: DVec3, [x, y]: [DVec3; 2]) -> Option<Self> {
+        // Down the page.
+        let flat = |d: DVec3| [d.dot(x), -d.dot(y)];
+        let (foot, along, inward) = match cell.shape() {
+            Shape::Line { point, direction } => {
+                let foot = *point + *direction * (origin - *point).dot(*direction);
+                (flat(foot - origin), flat(*direction), None)
+            }
+            Shape::Plane { point, normal } | Shape::HalfSpace { point, normal } => {
+                let [a, b] = flat(*normal);
+                let share = normal.dot(*point - origin) / (a * a + b * b);
+                let solid = matches!(cell.shape(), Shape::HalfSpace { .. });
+                ([a * share, b * share], [-b, a], solid.then_some([-a, -b]))
+            }
+            _ => return None,
+        };
+        let seen = along[0] * along[0] + along[1] * along[1] > 1e-3;
+        (seen && foot.iter().all(|x| x.is_finite())).then_some(Self {
+            foot,
+            along,
+            inward,
+        })
+    }
+
+    /// The ends of the line, `far` lengths of its direction away, and with them those of the side of the viewers.
+    fn corners(&self, far: f64) -> Vec<[f64; 2]> {
+        let ends = [-far, far].map(|t| [0, 1].map(|k| self.foot[k] + self.along[k] * t));
+        let mut all = ends.to_vec();
+        if let Some(inward) = self.inward {
+            let beyond = |end: [f64; 2]| [0, 1].map(|k| end[k] + inward[k] * 2.0 * far);
+            all.extend([beyond(ends[1]), beyond(ends[0])]);
+        }
+        all
+    }
+}
+
+/// Outlines with their points, and the corners of the cell with all lines between them, seen along the normal; of a cell
+/// without an end what is in the picture.
+fn svg(points: &[DVec3], profiles: &[Profile], cell: &ViewCell) -> String {
     let Some([x, y]) = profiles.first().map(|p| p.axes) else {
         return String::new();
     };
@@ -145,8 +192,11 @@ fn svg(points: &[DVec3], profiles: &[Profile], corners: &[DVec3]) -> String {
         .iter()
         .map(|profile| profile.outline.iter().map(|&p| flat(p)).collect())
         .collect();
+    let trace = Trace::of(cell, points[0], [x, y]);
+    let corners = cell.corners().unwrap_or_default();
     let cell: Vec<[f64; 2]> = corners.iter().map(|&p| flat(p)).collect();
-    let all = || outlines.iter().flatten().chain(&cell);
+    let foot = trace.as_ref().map(|t| &t.foot);
+    let all = || outlines.iter().flatten().chain(&cell).chain(foot);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for p in all() {
         for axis in 0..2 {
@@ -176,6 +226,23 @@ fn svg(points: &[DVec3], profiles: &[Profile], corners: &[DVec3]) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 800\">\n<rect width=\"800\" height=\"800\" \
          fill=\"white\"/>\n",
     );
+    if let Some(trace) = &trace {
+        // Out of the picture, however steep.
+        let far = 4.0 * span / (trace.along[0].abs() + trace.along[1].abs());
+        let corners = trace.corners(far);
+        if trace.inward.is_some() {
+            let _ = writeln!(
+                text,
+                "<polygon points=\"{}\" fill=\"#b22222\" fill-opacity=\"0.15\"/>",
+                path(&corners)
+            );
+        }
+        let _ = writeln!(
+            text,
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"#b22222\" stroke-width=\"2\"/>",
+            path(&corners[..2])
+        );
+    }
     for (outline, &point) in outlines.iter().zip(points) {
         let [px, py] = place(flat(point));
         let _ = writeln!(

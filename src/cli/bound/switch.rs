@@ -71,8 +71,14 @@ impl Found {
 
     pub(super) fn tell(&self) {
         answer!("distance          at most {}", self.distance_bound);
+        if self.switch_distance.is_infinite() {
+            answer!(
+                "switch            at no distance: without an angle every displacement is seen"
+            );
+            return;
+        }
         answer!(
-            "switch            from a distance of {} on: less than {:.6} degrees",
+            "switch            from a distance of {} on: at most {:.6} degrees",
             self.switch_distance,
             self.switch_angle_deg
         );

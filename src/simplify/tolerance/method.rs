@@ -74,7 +74,7 @@ impl ToleranceMethod {
         let bound = length.min(FAR * diagonal);
         let reach = Reach::new(bound, largest).ok_or_else(|| {
             Error::Usage(format!(
-                "the error {wanted} is a distance of {}, which is lost in the rounding of coordinates as large as {}; expected a larger one",
+                "the error {wanted:e} is a distance of {:e}, which is lost in the rounding of coordinates as large as {:e}; expected a larger one",
                 frame.leave_length(length, 1),
                 frame.leave_length(largest, 1),
             ))
