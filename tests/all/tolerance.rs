@@ -8,12 +8,12 @@ use glam::DVec3;
 use lodmark::{
     Progress, Silent,
     bound::tolerance::Source,
-    collapse::{History, Replay},
+    collapse::{Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Ring, Rules, Site},
     mesh::{Mesh, canonical, content_sha256, generate},
-    num::Precision,
+    num::{Frame, Precision},
     simplify::{
         Amount, Options, Outcome, Stop, simplify,
-        tolerance::{Distance, ToleranceOptions},
+        tolerance::{Distance, ToleranceMethod, ToleranceOptions},
     },
 };
 use proptest::prelude::*;
@@ -84,6 +84,49 @@ proptest! {
         if !own.one_sided {
             let back = farthest(&mesh, &outcome.mesh, 6);
             prop_assert!(back <= bound, "{back} > {bound}");
+        }
+    }
+
+    /// Whatever was proposed before: the last word is about the mesh as it is now.
+    #[test]
+    fn no_collapse_is_confirmed_that_leaves_a_part_of_the_original_alone(
+        kind in prop::sample::select(vec![0_usize, 1, 3]), seed: u64, share in 0.01_f64..0.15,
+    ) {
+        let mesh = canonical(&shapes::any(kind, seed)).mesh;
+        let mut live = LiveMesh::new(&mesh, Frame::default());
+        let mut method = ToleranceMethod::new(&live, self::share(share)).expect("a bound");
+        let bound = share * diagonal(&mesh);
+        let original = corners(&mesh);
+        let mut random = shapes::Random(seed);
+        let (mut ring, mut patch, mut changes) = (Ring::default(), Patch::default(), Changes::default());
+        for _ in 0..15 {
+            let edge = random.below(live.edge_ids() as usize) as u32;
+            if live.edge(edge).is_none() || !ring.gather(&live, edge) {
+                continue;
+            }
+            let Ok(site) = Site::new(&live, &ring, Rules::default()) else { continue };
+            let [u, w] = ring.points;
+            let mut noise = || (random.unit() - 0.5) * bound;
+            let place = u.lerp(w, 0.5 + noise() / bound) + DVec3::new(noise(), noise(), noise());
+            let Ok(position) = site.admit(site.fixed().unwrap_or(place)) else { continue };
+            site.patch(position, &mut patch);
+            let all = 0..live.triangle_ids();
+            let stays = all.filter(|t| patch.removed.iter().all(|f| f.id != *t));
+            let mut after: Vec<[DVec3; 3]> = stays.filter_map(|t| live.points(t)).collect();
+            after.extend(patch.added.iter().map(|f| patch.after(&live, f)));
+            let mut most = 0.0_f64;
+            for &triangle in &original {
+                for p in lattice(triangle, 4) {
+                    most = most.max(after.iter().map(|&t| distance(p, t)).fold(f64::INFINITY, f64::min));
+                }
+            }
+            let proposal = Proposal { position, image: 0, geometric: 0.0 };
+            let confirmed = method.confirm(&live, &patch, &proposal);
+            prop_assert!(!confirmed || most <= bound, "{most} of {bound}");
+            if confirmed {
+                live.apply(&patch, &mut changes);
+                method.committed(&live, &patch);
+            }
         }
     }
 

@@ -153,6 +153,50 @@ proptest! {
             }
         }
     }
+
+    /// A piece that is large for its distance: inside it the angle may be larger than at every corner.
+    #[test]
+    fn a_viewer_close_to_a_large_face_sees_no_point_inside_it_beyond_the_angle(
+        kind in 0_u8..3, seed: u64, near in 0.1..1.5_f64, degrees in prop::sample::select(vec![0.5, 5.0, 30.0]),
+    ) {
+        let mut random = Random(seed);
+        let mut vector = |size: f64| {
+            let mut axis = || (random.unit() * 2.0 - 1.0) * size;
+            DVec3::new(axis(), axis(), axis())
+        };
+        // Viewers above the middle of a triangle, which moves towards them or away, and a little to the side.
+        let triangle = [(1.8, 0.0), (-0.9, 1.6), (-0.9, -1.6)].map(|(x, y)| DVec3::new(x, y, 0.0) + vector(0.2));
+        let eye = DVec3::Z * near + vector(0.2 * near);
+        let corners: Vec<DVec3> = (0..=kind).map(|_| eye + vector(0.3 * near)).collect();
+        let cell = match corners[..] {
+            [a] => ViewCell::point(a),
+            [a, b] => ViewCell::segment([a, b]),
+            _ => ViewCell::polygon(&corners),
+        }.expect("a cell");
+        let way = DVec3::Z * if seed.is_multiple_of(2) { -1.0 } else { 0.4 } + vector(0.02);
+        let own = [0, 1, 2].map(|_| vector(0.02));
+        let moved = |k: f64| [0, 1, 2].map(|i| triangle[i] + (way + own[i]) * k);
+        let limit = AngleLimit::new(&[triangle], &cell, f64::to_radians(degrees));
+        let (mut low, mut high) = (0.0, 2.0 * near);
+        for _ in 0..40 {
+            let k = 0.5 * (low + high);
+            if limit.allows(0, &triangle, &moved(k)) { low = k } else { high = k }
+        }
+        let allowed = moved(low);
+        for _ in 0..10 {
+            let weights: Vec<f64> = corners.iter().map(|_| random.unit() + 1e-9).collect();
+            let sum: f64 = weights.iter().sum();
+            let eye = corners.iter().zip(&weights).fold(DVec3::ZERO, |all, (&c, &w)| all + c * (w / sum));
+            for i in 0..=20 {
+                for j in 0..=20 - i {
+                    let place = [f64::from(i) / 20.0, f64::from(j) / 20.0];
+                    let (p, s) = (at(triangle, place) - eye, at(allowed, place) - eye);
+                    let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
+                    prop_assert!(seen <= degrees * (1.0 + 1e-9), "{seen} of {degrees} from {eye} at {place:?}");
+                }
+            }
+        }
+    }
 }
 
 /// A surface that goes around its vertices twice, like a spiral staircase.
