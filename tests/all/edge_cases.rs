@@ -1,7 +1,7 @@
 //! Guarantees where geometry is at its worst: needles, borders, edges of three faces, viewers on and inside a mesh, no
 //! angle and almost a right one, cells without an end. What other files cover is not repeated here.
 
-use std::fs;
+use std::{f64::consts::FRAC_PI_6, fs};
 
 use glam::DVec3;
 use lodmark::{
@@ -221,7 +221,7 @@ fn without_an_angle_a_step_aside_passes_and_with_nearly_a_right_one_a_wider_one(
     let mut last = 0.0;
     for degrees in [60.0_f64, 89.0, 89.9, 89.999] {
         let turn = (degrees - 30.0).to_radians();
-        let start = at(-libm::sin(0.5236), 0.0, -libm::cos(0.5236));
+        let start = at(-libm::sin(FRAC_PI_6), 0.0, -libm::cos(FRAC_PI_6));
         let end = at(libm::sin(turn), 0.0, -libm::cos(turn));
         let corners = |p: DVec3| vec![p, p + at(0.0, 1e-3, 0.0), p * 1.001];
         let face = |p| exact(corners(p), vec![[0, 1, 2]]);
