@@ -202,6 +202,25 @@ fn a_viewer_inside_a_closed_mesh_sees_what_moved_by_more_than_the_bound() {
 }
 
 #[test]
+fn viewers_on_what_stands_for_the_original_are_missed_where_none_is_on_the_original() {
+    let triangle = |z: f64| {
+        let corners = [(-1.0, -1.0), (2.0, -0.5), (0.3, 1.5)].map(|(x, y)| at(x, y, z));
+        Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid")
+    };
+    for step in [0.5, 1e-2, 1e-4, 1e-6] {
+        for (low, high) in [
+            (at(-0.17, -0.23, -0.31), at(0.11, 0.4, 0.0)),
+            (DVec3::splat(-5.1), at(4.3, 4.7, 0.0)),
+        ] {
+            // The cell ends half way between the two.
+            let cell = ViewCell::cuboid(low, high + DVec3::Z * (0.5 * step)).expect("a box");
+            let report = held(&triangle(step), &triangle(0.0), &cell, 89.0);
+            assert!(!report.holds && !report.proven, "{step}: {report:?}");
+        }
+    }
+}
+
+#[test]
 fn without_an_angle_a_step_aside_passes_and_with_nearly_a_right_one_a_wider_one() {
     let mesh = awkward(|_| DVec3::ZERO);
     let eye = at(0.5, 0.25, 4.0);

@@ -110,6 +110,9 @@ fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
     assert!(!report(0.25 / 1.01).holds);
     let held = report(0.25 * 1.01);
     assert!(held.holds && held.proven, "{held:?}");
+    // Nothing is looked at closely under a claim that is far too large; what is proven is true all the same.
+    let loose = report(100.0);
+    assert!(loose.directions[1].proven >= 0.25, "{loose:?}");
     // Every point of the frame lies on the roof.
     let one_sided =
         distance(&roof, &frame, Claim::Absolute(1e-2), true, 100, &Silent).expect("valid");
@@ -152,6 +155,26 @@ fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() 
             assert!(!found.proven, "{share}: {found:?}");
         }
     }
+}
+
+#[test]
+fn what_no_cut_decides_is_said_to_be_proven() {
+    // Along all of x = 0 both walls are as far as the claim: no part across that line is near one of them as a whole.
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let wall = |x: f64| [p(x, -9.0, 0.0), p(x, 9.0, 0.0), p(3.0 * x, 0.0, -1.0)];
+    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+    let corners = vec![p(-0.5, 0.0, 0.0), p(0.4, 0.1, 0.0), p(-0.1, 2.0, 0.0)];
+    let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+    let claim = Claim::Absolute(1.0);
+    let found = distance(&walls.expect("valid"), &sheet, claim, true, 50, &Silent).expect("valid");
+    assert!(found.holds && !found.proven, "{found:?}");
+    let [only] = &found.directions[..] else {
+        panic!("{found:?}");
+    };
+    assert!(
+        !only.is_proven && only.proven > 1.0 && only.undecided_area > 0.0,
+        "{only:?}"
+    );
 }
 
 #[test]
