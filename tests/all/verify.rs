@@ -2,3 +2,4 @@
 
 mod angle;
 mod distance;
+mod record;

@@ -158,6 +158,41 @@ fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() 
 }
 
 #[test]
+fn samples_crowd_on_some_triangles() {
+    // Every third triangle of a row is raised; they are of all sizes, and the last one stays.
+    let mut random = Pcg32::new(7, 3);
+    let (mut flat, mut raised, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut area, mut length, mut shares) = (0.0, 0.0, [0.0; 2]);
+    for t in 0..31_u32 {
+        let size = 0.2 + random.unit();
+        let x = 3.0 * f64::from(t);
+        let corners = [(x, 0.0), (x + size, 0.0), (x, size)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let up = t % 3 == 1;
+        let by = DVec3::Z * if up { 1.0 } else { 0.0 };
+        flat.extend(corners);
+        raised.extend(corners.map(|p| p + by));
+        faces.push([3 * t, 3 * t + 1, 3 * t + 2]);
+        area += size * size;
+        length += size;
+        if up {
+            shares[0] += size * size;
+            shares[1] += size;
+        }
+    }
+    let flat = Mesh::from_triangles(flat, faces.clone()).expect("valid");
+    let raised = Mesh::from_triangles(raised, faces).expect("valid");
+    let claim = Claim::Absolute(0.5);
+    let found = distance(&flat, &raised, claim, true, 9_000, &Silent).expect("valid");
+    // Eight ninths by area, one by length, and all corners: of ten raised triangles.
+    let expected = 8_000.0 * shares[0] / area + 1_000.0 * shares[1] / length + 30.0;
+    let violations = found.directions[0].violations as f64;
+    assert!(
+        (violations - expected).abs() < 0.005 * 9_000.0,
+        "{violations} of {expected}"
+    );
+}
+
+#[test]
 fn what_no_cut_decides_is_said_to_be_proven() {
     // Along all of x = 0 both walls are as far as the claim: no part across that line is near one of them as a whole.
     let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
