@@ -7,7 +7,7 @@ use glam::DVec2;
 use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
 use lodmark::mesh::generate::Pcg32;
 
-use super::seen::{angle, between, largest_of_two};
+use super::seen::{angle, between, largest, largest_of_two};
 
 /// The special cases of section 5 and of appendices A to C. In the frame of one viewpoint at the origin with the
 /// direction along y, a face lies on the line y = m + x tan(g).
@@ -256,24 +256,26 @@ impl Case {
             .min(to(d, a, b))
     }
 
-    /// The largest angle by which a sampled viewer sees a sampled point move that goes to offset `rho` in the sense of
-    /// `sign`, and the parameters of both; `finer` samples more densely.
+    /// The angle by which the viewer at `s` of the cell sees the point at `t` of the face move to offset `rho`, 0 where
+    /// that is not in the sense of `sign`.
+    fn angle(&self, [s, t]: [f64; 2], rho: f64, sign: f64) -> f64 {
+        let (v, p, scale) = (self.viewpoint(s), self.point(t), self.scale());
+        let way = rho - p.dot(self.normal);
+        if way * sign < 1e-12 * SCALE * scale.abs() {
+            return 0.0;
+        }
+        if p.distance(v) < 1e-12 * SCALE {
+            // A point at a viewpoint must not move at all.
+            return std::f64::consts::PI;
+        }
+        angle(v, p, p + self.direction * (way / scale))
+    }
+
+    /// The largest such angle of a sampled viewer and a sampled point, and the parameters of both; `finer` samples more
+    /// densely.
     fn seen(&self, rho: f64, sign: f64, finer: u32) -> (f64, [f64; 2]) {
-        let scale = self.scale();
         largest_of_two(
-            |s, t| {
-                let v = self.viewpoint(s);
-                let p = self.point(t);
-                let way = rho - p.dot(self.normal);
-                if way * sign < 1e-12 * SCALE * scale.abs() {
-                    return 0.0;
-                }
-                if p.distance(v) < 1e-12 * SCALE {
-                    // A point at a viewpoint must not move at all.
-                    return std::f64::consts::PI;
-                }
-                angle(v, p, p + self.direction * (way / scale))
-            },
+            |s, t| self.angle([s, t], rho, sign),
             match (self.cell[0] == self.cell[1], self.gap() < 0.2) {
                 (true, _) => [0, 300 * finer],
                 (false, false) => [16 * finer, 24 * finer],
@@ -281,6 +283,12 @@ impl Case {
             },
             4 * finer as usize,
         )
+    }
+
+    /// As [`Case::seen`], slowly: the best viewer for every point, for ridges too narrow to be followed.
+    fn seen_point_by_point(&self, rho: f64, sign: f64) -> f64 {
+        let worst = |t: f64| largest(|s| self.angle([s, t], rho, sign), 200).0;
+        largest(worst, 100).0
     }
 
     /// Panics where sampling contradicts the claim that `rho` is the last valid offset in the sense of `sign`; gives the
@@ -315,7 +323,9 @@ impl Case {
             let (_, [_, t]) = self.seen(inside, sign, finer);
             let extent = (rho - self.point(t).dot(self.normal)).abs();
             let step = 1e-4 * extent + floor * size;
-            self.seen(rho + sign * step, sign, finer).0 > self.theta
+            let beyond = rho + sign * step;
+            self.seen(beyond, sign, finer).0 > self.theta
+                || finer == 40 && self.seen_point_by_point(beyond, sign) > self.theta
         });
         assert!(found, "{}: nobody sees too much beyond the claim", what());
         t
