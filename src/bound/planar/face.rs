@@ -55,6 +55,12 @@ impl Interval {
         max: f64::INFINITY,
     };
 
+    /// No offset.
+    pub const NONE: Self = Self {
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
+    };
+
     /// The offsets that are in both.
     #[inline]
     #[must_use]
