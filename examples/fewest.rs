@@ -3,11 +3,13 @@
 //! ```text
 //! cargo run --release --example fewest -- forest 0.1 2880 400
 //! cargo run --release --example fewest -- city 0.1 2880 400
+//! cargo run --release --example fewest -- forest 0.1 720 200 2
 //! ```
-//! Scene, angle in degrees, directions of planes over half a turn, rounds. Give every wall a weight. If no plane holds
+//! Scene, angle in degrees, directions of planes over half a turn, rounds, and slants of the direction of projection to
+//! either side of the normal over 60 degrees (none unless given). Give every wall a weight. If no plane holds
 //! walls of more than W together, then all planes together hold all walls only if there are at least (sum of weights) /
 //! W of them, whoever chooses them. Rounds shrink the weights of walls on heavy planes; the best quotient is printed.
-//! The bound is for planes in the directions tried, at any offset; which walls fit which plane is exact.
+//! The bound is for planes in the directions and slants tried, at any offset; which walls fit which plane is exact.
 
 #![allow(
     clippy::disallowed_methods,
@@ -32,8 +34,10 @@ type Sweep = Vec<(usize, bool)>;
 fn main() {
     let words: Vec<String> = env::args().skip(1).collect();
     let parsed = || {
-        let [scene, angle, directions, rounds] = words.as_slice() else {
-            return None;
+        let ([scene, angle, directions, rounds], slants) = match words.as_slice() {
+            [s, a, d, r] => ([s, a, d, r], 0),
+            [s, a, d, r, slants] => ([s, a, d, r], slants.parse().ok()?),
+            _ => return None,
         };
         let aperture = Aperture::degrees(angle.parse().ok()?).ok()?;
         let (walls, cell) = walls(scene)?;
@@ -43,14 +47,15 @@ fn main() {
             aperture,
             directions.parse().ok()?,
             rounds.parse().ok()?,
+            slants,
         ))
     };
-    let Some((walls, cell, aperture, directions, rounds)) = parsed() else {
-        println!("expected: city|forest DEGREES DIRECTIONS ROUNDS");
+    let Some((walls, cell, aperture, directions, rounds, slants)) = parsed() else {
+        println!("expected: city|forest DEGREES DIRECTIONS ROUNDS [SLANTS]");
         return;
     };
-    let sweeps: Vec<Sweep> = normals(directions)
-        .map(|normal| sweep(&walls, &Projection::new(&cell, normal, aperture)))
+    let sweeps: Vec<Sweep> = projections(&cell, aperture, directions, slants)
+        .map(|projection| sweep(&walls, &projection))
         .collect();
     println!(
         "at least {:.1} planes for {} walls",
@@ -81,9 +86,21 @@ fn walls(scene: &str) -> Option<(Vec<[DVec2; 2]>, SegmentCell)> {
     Some((walls.collect(), cell.ok()?))
 }
 
-fn normals(count: u32) -> impl Iterator<Item = DVec2> {
+fn projections(
+    cell: &SegmentCell,
+    aperture: Aperture,
+    count: u32,
+    slants: i32,
+) -> impl Iterator<Item = Projection> {
     let turn = std::f64::consts::PI / f64::from(count);
-    (0..count).map(move |k| DVec2::from_angle(turn * f64::from(k)))
+    let slant = std::f64::consts::FRAC_PI_3 / f64::from(slants.max(1));
+    (0..count).flat_map(move |k| {
+        (-slants..=slants).filter_map(move |i| {
+            let angle = turn * f64::from(k);
+            let along = DVec2::from_angle(angle + slant * f64::from(i));
+            Projection::oblique(cell, along, DVec2::from_angle(angle), aperture).ok()
+        })
+    })
 }
 
 fn sweep(walls: &[[DVec2; 2]], projection: &Projection) -> Sweep {

@@ -33,7 +33,7 @@ pub(super) struct Options {
     /// The axis that points up
     #[arg(long, value_enum, default_value = "z")]
     up: UpName,
-    /// Directions of planes over half a turn, 1 to 4096
+    /// Directions of planes over half a turn, 1 to 4096; the scene is projected on them across and slanted
     #[arg(long, value_name = "N", default_value_t = billboards::Options::DIRECTIONS)]
     directions: u32,
     /// Most texels in a row or column of a texture, 1 to 4096

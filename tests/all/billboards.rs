@@ -110,9 +110,10 @@ fn a_viewer_sees_a_point_displaced_by_more_than_the_angle() {
     for (name, cell, mesh, degrees) in scenes {
         let cloud = cloud(&mesh, &cell, &within(degrees));
         let theta = degrees.to_radians();
-        let (mut worst, mut shared) = (0.0_f64, 0);
+        let (mut worst, mut shared, mut slanted) = (0.0_f64, 0, 0);
         for quad in cloud.quads.iter().filter(|q| !q.horizontal) {
             shared += usize::from(quad.replaces.len() > 2);
+            slanted += usize::from(quad.replaces.len() > 2 && quad.along != quad.axes[2]);
             // Everything that is drawn, not only what is replaced.
             for &t in &quad.drawn {
                 for p in sampled(&mesh, t, &mut random, 2) {
@@ -128,6 +129,7 @@ fn a_viewer_sees_a_point_displaced_by_more_than_the_angle() {
             worst > theta * 0.4 && shared > 3,
             "{name}: {worst} of {theta}, {shared} shared planes"
         );
+        assert!(slanted > 3 || name != "segment", "{slanted} slanted planes");
         let claimed = cloud.displacement.horizontal;
         assert!(
             claimed <= theta * (1.0 + 1e-9) && claimed > 0.4 * theta,
@@ -142,8 +144,9 @@ fn a_texel_shows_a_point_that_belongs_elsewhere() {
     let mesh = generate::trees(300, 100.0);
     let cloud = cloud(&mesh, &cell, &within(0.5));
     let theta = 0.5_f64.to_radians();
-    let (mut opaque, mut empty) = (0, 0);
+    let (mut opaque, mut empty, mut slanted) = (0, 0, 0);
     for quad in cloud.quads.iter().filter(|q| q.drawn.len() > 2).take(12) {
+        slanted += usize::from(quad.along.dot(quad.axes[2]) < 0.97);
         let texture = quad.texture(&mesh);
         assert_eq!([texture.width(), texture.height()], quad.texels);
         for y in (0..texture.height()).step_by(3) {
@@ -152,7 +155,7 @@ fn a_texel_shows_a_point_that_belongs_elsewhere() {
                 let shown: Vec<DVec3> = quad
                     .drawn
                     .iter()
-                    .filter_map(|&t| behind(mesh.corners(t as usize), at, quad.axes[2]))
+                    .filter_map(|&t| behind(mesh.corners(t as usize), at, quad.along))
                     .collect();
                 if texture.at(x, y)[3] == 0 {
                     empty += 1;
@@ -163,7 +166,7 @@ fn a_texel_shows_a_point_that_belongs_elsewhere() {
                             .all(|&(u, v)| {
                                 let near = place(quad, f64::from(x) + u, f64::from(y) + v);
                                 quad.drawn.iter().any(|&t| {
-                                    behind(mesh.corners(t as usize), near, quad.axes[2]).is_some()
+                                    behind(mesh.corners(t as usize), near, quad.along).is_some()
                                 })
                             });
                     assert!(!inner, "a covered texel at {x}, {y} is transparent");
@@ -180,6 +183,7 @@ fn a_texel_shows_a_point_that_belongs_elsewhere() {
         }
     }
     assert!(opaque > 300 && empty > 300, "{opaque} {empty}");
+    assert!(slanted > 2, "{slanted} slanted quads");
 }
 
 /// A point of a quad by column and row, in texels.
@@ -234,6 +238,7 @@ fn a_triangle_is_lost_or_shown_by_two_quads_for_its_own() {
             assert!(quad.replaces.iter().all(|t| quad.drawn.contains(t)));
             let [right, up, back] = quad.axes;
             assert!((right.cross(up) - back).length() < 1e-12);
+            assert!((quad.along.length() - 1.0).abs() < 1e-12 && quad.along.dot(back) > 0.1);
             for &t in &quad.replaces {
                 for p in mesh.corners(t as usize) {
                     let on = quad.project(p) - quad.corner;

@@ -8,8 +8,12 @@
     reason = "what is held against the crate's math must not use it; exact results are exact; cases are counted aloud"
 )]
 
+#[path = "planar/case.rs"]
+mod case;
 #[path = "planar/faces.rs"]
 mod faces;
+#[path = "planar/oblique.rs"]
+mod oblique;
 #[path = "planar/points.rs"]
 mod points;
 #[path = "planar/seen.rs"]

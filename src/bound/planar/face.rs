@@ -1,5 +1,5 @@
-//! Which lines a face may be projected on, along the line's normal, so that no viewer sees any of its points move by
-//! more than an angle.
+//! Which lines a face may be projected on, along their normal or any other direction, so that no viewer sees any of its
+//! points move by more than an angle.
 //!
 //! Eisemann & Décoret 2007, section 5 with appendices B and C. For one viewpoint the limit over a face is the smallest
 //! value of equation 11, whose stationary points are roots of one quadratic. Its two roots are taken in the form that
@@ -9,6 +9,20 @@
 //! cell's ends the limit is linear (equation 10). Every candidate is a legal viewpoint with a point of the face, so a
 //! superfluous one changes nothing. The alpha of equations 11 to 13 is an abscissa across the direction, not a length
 //! along the face.
+//!
+//! The paper's lines are across the direction of projection. Slanted ones have the normal y + kx, in the frame with y
+//! along the direction and x across it, k their [`skew`](Projection::oblique). Moved by t along y, a point goes from the
+//! offset y + kx to y + kx + t, so that kx is all that is added to equation 11. On the face line y = m + x tan(g), seen
+//! from the origin with x > 0, the limit is
+//!
+//! ```text
+//! f(x) = (A x^2 + B x) / (C x - D)        A = sin + k cos + tan(g) (cos - k sin)        C = cos - tan(g) sin
+//!                                         B = m (cos - k sin)                           D = m sin
+//! ```
+//! sin and cos those of the aperture, of minus the aperture where x < 0. Because D A + C B = m, f' = 0 has the roots
+//! m (sin +- sqrt(sin / A)) / C, whose product is -m^2 sin (cos - k sin) / (A C): equations 12 and 13 for k = 0, and the
+//! same special cases otherwise. Beyond those of the paper, for a line along the side of the cone (cos = k sin) one root
+//! is the viewpoint. What is linear along the face (equation 10) stays linear.
 
 use glam::DVec2;
 
@@ -16,7 +30,7 @@ use super::{
     Aperture, SegmentCell,
     point::{Tangent, reach_of, tangents},
 };
-use crate::num::math;
+use crate::{Error, Result, num::math};
 
 /// A viewpoint this close to a face is on it, as a fraction of the coordinates: where rounding decides on which side it
 /// is, it would also decide whether the limit beside it is found.
@@ -25,7 +39,7 @@ const CONTACT: f64 = 1e-14;
 /// How much more than the aperture [`Projection::may_reach`] lets pass, against rounding.
 const LENIENCE: f64 = 1e-6;
 
-/// Offsets `rho` of the valid lines `x . d = rho`; none where `min > max`.
+/// Offsets `rho` of the valid lines `x . n = rho` with the normal n; none where `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The smallest valid offset; minus infinity where there is none.
@@ -39,6 +53,12 @@ impl Interval {
     pub const ALL: Self = Self {
         min: f64::NEG_INFINITY,
         max: f64::INFINITY,
+    };
+
+    /// No offset.
+    pub const NONE: Self = Self {
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
     };
 
     /// The offsets that are in both.
@@ -64,13 +84,18 @@ impl Interval {
     }
 }
 
-/// A cell, a direction of projection and an aperture: what all faces have in common.
+/// A cell, a direction of projection, the normal of the lines that are projected on, and an aperture: what all faces have
+/// in common.
 #[derive(Clone, Debug)]
 pub struct Projection {
     cell: SegmentCell,
     direction: DVec2,
     sin: f64,
     cos: f64,
+    /// How much more offset a point has per unit across the direction; 0 for lines across it.
+    skew: f64,
+    /// Offset along the normal for an offset along the direction, above 0; 1 for lines across the direction.
+    scale: f64,
     /// Ends of the cell by their coordinates across and along the direction; infinite ends are left out.
     ends: [Option<DVec2>; 2],
     /// Tangents by side of the axis (0 left of it), then by sign of the direction (0 along it).
@@ -80,7 +105,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Projections along the unit vector `direction`, for viewers in `cell` who accept `aperture`.
+    /// Projections along the unit vector `direction` on the lines across it, for viewers in `cell` who accept `aperture`.
     #[must_use]
     pub fn new(cell: &SegmentCell, direction: DVec2, aperture: Aperture) -> Self {
         let local = cell.turn(direction);
@@ -93,22 +118,69 @@ impl Projection {
             cos: aperture.cos(),
             ends: cell.ends().map(end),
             tangents: [local, mirrored].map(|d| [d, -d].map(|d| tangents(d, aperture))),
+            skew: 0.0,
+            scale: 1.0,
             offset: cell.origin().dot(direction),
         }
     }
 
+    /// Projections along the unit vector `direction`, or against it, on lines with the unit vector `normal`: with both
+    /// the same, those of [`Projection::new`].
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the lines are parallel to the direction, so that nothing projected along it reaches them.
+    pub fn oblique(
+        cell: &SegmentCell,
+        direction: DVec2,
+        normal: DVec2,
+        aperture: Aperture,
+    ) -> Result<Self> {
+        // To and fro along a direction is the same projection.
+        let toward = if direction.dot(normal) < 0.0 {
+            -direction
+        } else {
+            direction
+        };
+        let scale = toward.dot(normal);
+        let skew = normal.perp_dot(toward) / scale;
+        if !(scale > 0.0 && skew.is_finite()) {
+            return Err(Error::Usage(format!(
+                "nothing projected along {direction} reaches a line with normal {normal}: give two directions that are \
+                 not at right angles"
+            )));
+        }
+        let across = Self::new(cell, toward, aperture);
+        if normal == toward {
+            return Ok(across);
+        }
+        Ok(Self {
+            skew,
+            scale,
+            offset: cell.origin().dot(normal),
+            ..across
+        })
+    }
+
+    /// The offset of a point given across and along the direction, along the direction.
+    #[inline(always)]
+    fn own(&self, p: DVec2) -> f64 {
+        p.y + self.skew * p.x
+    }
+
     /// The offsets of the lines that the face from `a` to `b` may be projected on. A face may be a point, hold the
     /// viewpoint, or cross the cell's line: it is split there (appendix B). Where it touches the cell, nothing but the
-    /// line through the contact is left of the interval. Bounds of the paper's section 5, exact.
+    /// line through the contact is left of the interval. Bounds of the paper's section 5, exact. O(1).
     #[inline]
     #[must_use]
     pub fn interval(&self, a: DVec2, b: DVec2) -> Interval {
         let (m, n) = (self.cell.enter(a), self.cell.enter(b));
         let d = self.direction;
         let view = |p: DVec2| DVec2::new(p.x * d.y - p.y * d.x, p.x * d.x + p.y * d.y);
+        let (from, to) = (view(m), view(n));
         let face = Face {
-            from: view(m),
-            to: view(n),
+            from,
+            to,
+            offsets: [self.own(from), self.own(to)],
         };
         let local = if self.sin == 0.0 {
             self.interval_without_tolerance(&face)
@@ -119,8 +191,8 @@ impl Projection {
             bounds.0
         };
         Interval {
-            min: local.min + self.offset,
-            max: local.max + self.offset,
+            min: local.min * self.scale + self.offset,
+            max: local.max * self.scale + self.offset,
         }
     }
 
@@ -132,9 +204,10 @@ impl Projection {
         let local = self.cell.enter(p);
         let d = self.direction;
         let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
+        let own = self.own(at);
         let (low, high) = (
-            offsets.min - self.offset - at.y,
-            offsets.max - self.offset - at.y,
+            (offsets.min - self.offset) / self.scale - own,
+            (offsets.max - self.offset) / self.scale - own,
         );
         // Points may go any part of the way that they may go: the nearest offset decides.
         let (way, sense) = if low > 0.0 {
@@ -176,9 +249,11 @@ impl Projection {
         let local = self.cell.enter(centre);
         let d = self.direction;
         let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
+        let own = self.own(at);
+        let spread = radius * (1.0 + self.skew.abs());
         let (low, high) = (
-            offsets.min - self.offset - at.y - radius,
-            offsets.max - self.offset - at.y + radius,
+            (offsets.min - self.offset) / self.scale - own - spread,
+            (offsets.max - self.offset) / self.scale - own + spread,
         );
         let (way, sense) = if low > 0.0 {
             (low, 1.0)
@@ -225,16 +300,17 @@ impl Projection {
             && DVec2::new(from.x, to.x) == DVec2::splat(v.x)
         {
             let mut bounds = Bounds(Interval::ALL);
-            bounds.narrow(from - v, from.y, 0.0, 1.0);
-            bounds.narrow(to - v, to.y, 0.0, 1.0);
+            bounds.narrow(from - v, face.offsets[0], 0.0, 1.0);
+            bounds.narrow(to - v, face.offsets[1], 0.0, 1.0);
             if (from.y < v.y) != (to.y < v.y) {
-                bounds.pin(v.y);
+                bounds.pin(self.own(v));
             }
             return bounds.0;
         }
+        let [from, to] = face.offsets;
         Interval {
-            min: from.y.max(to.y),
-            max: from.y.min(to.y),
+            min: from.max(to),
+            max: from.min(to),
         }
     }
 
@@ -249,20 +325,23 @@ impl Projection {
         if run.x != 0.0 {
             for (sign, pair) in [(1.0, 0), (-1.0, 2)] {
                 let s = sign * sin;
-                let p = s * run.x + cos * run.y;
+                // The cosine less the part of the sine, 0 for a line along the side of the cone.
+                let beside = cos - self.skew * s;
+                let p = (s + self.skew * cos) * run.x + beside * run.y;
                 let q = cos * run.x - s * run.y;
                 let root = s + sign * math::sqrt(s * run.x / p);
                 extrema[pair] = root / q;
-                extrema[pair + 1] = -s * cos / (p * root);
+                extrema[pair + 1] = -s * beside / (p * root);
             }
         }
         for end in self.ends.into_iter().flatten() {
             let (from, to) = (face.from - end, face.to - end);
-            bounds.narrow(from, face.from.y, sin, cos);
-            bounds.narrow(to, face.to.y, sin, cos);
+            let here = self.own(end);
+            bounds.narrow(from, face.offsets[0], sin, cos);
+            bounds.narrow(to, face.offsets[1], sin, cos);
             if run.x == 0.0 {
                 if from.x == 0.0 && (from.y < 0.0) != (to.y < 0.0) {
-                    bounds.pin(end.y);
+                    bounds.pin(here);
                 }
                 continue;
             }
@@ -273,10 +352,10 @@ impl Projection {
                 let size = |p: DVec2| p.x.abs() + p.y.abs();
                 let near = CONTACT * (size(face.from) + size(face.to) + size(end));
                 if ahead <= near {
-                    bounds.0.max = bounds.0.max.min(end.y);
+                    bounds.0.max = bounds.0.max.min(here);
                 }
                 if ahead >= -near {
-                    bounds.0.min = bounds.0.min.max(end.y);
+                    bounds.0.min = bounds.0.min.max(here);
                 }
             }
             let (low, high) = (from.x.min(to.x), from.x.max(to.x));
@@ -285,7 +364,8 @@ impl Projection {
                 if x > low && x < high {
                     let along = (x - from.x) * inverse * run.y;
                     let point = DVec2::new(x, from.y + along);
-                    bounds.narrow(point, face.from.y + along, sin, cos);
+                    let offset = face.offsets[0] + (along + self.skew * (x - from.x));
+                    bounds.narrow(point, offset, sin, cos);
                 }
             }
         }
@@ -315,7 +395,7 @@ impl Projection {
             Some(at) => [Some((0.0, at, below)), Some((at, 1.0, !below))],
         };
         let [first, last] = self.cell.ends();
-        let run = face.to.y - face.from.y;
+        let run = face.offsets[1] - face.offsets[0];
         for (low, high, below) in parts.into_iter().flatten() {
             let side = if below { -1.0 } else { 1.0 };
             for (direction, sign) in [(0, 1.0), (1, -1.0)] {
@@ -341,7 +421,7 @@ impl Projection {
                     };
                     for t in [part(low, at_low), part(high, at_high)] {
                         let height = (from_height + t * rise) * side;
-                        let limit = face.from.y + t * run + sign * length * height.max(0.0);
+                        let limit = face.offsets[0] + t * run + sign * length * height.max(0.0);
                         if sign > 0.0 {
                             bounds.0.max = bounds.0.max.min(limit);
                         } else {
@@ -354,11 +434,12 @@ impl Projection {
     }
 }
 
-/// The ends of a face by their coordinates across and along the direction.
+/// The ends of a face by their coordinates across and along the direction, and their offsets.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     from: DVec2,
     to: DVec2,
+    offsets: [f64; 2],
 }
 
 /// An interval in the making.

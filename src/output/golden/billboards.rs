@@ -34,7 +34,7 @@ pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
         let cloud = billboards(&mesh, &cell, &options, &Silent)?;
         let mut bytes = Vec::new();
         for quad in &cloud.quads {
-            let vectors = [&[quad.corner][..], &quad.axes].concat();
+            let vectors = [&[quad.corner, quad.along][..], &quad.axes].concat();
             let numbers = vectors.iter().flat_map(|v| v.to_array()).chain(quad.size);
             bytes.extend(numbers.flat_map(|x| x.to_bits().to_le_bytes()));
             let counts = quad.texels.iter().chain(&quad.replaces).chain(&quad.drawn);

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 
 use super::{
     Displacement, Limit, Options, Quad,
+    bearing::Bearing,
     error::{displacement, eyes},
     flat::{self, Level},
     plan::{Plan, PlanCell, PlanFace},
-    quad::texels,
+    quad::{project, texels},
     select::{Slab, select},
     tree::PlanTree,
 };
@@ -72,7 +73,7 @@ pub fn billboards(
     for number in alone {
         match own_plane(&faces[number as usize]) {
             Some((normal, rho)) => slabs.push(Slab {
-                normal,
+                bearing: Bearing::across(normal),
                 rho,
                 faces: vec![number],
             }),
@@ -127,12 +128,14 @@ impl Scene<'_> {
     /// The quad of a vertical plane; `None` where its faces are seen from the edge only.
     fn vertical(&self, slab: &Slab, faces: &[PlanFace], tree: &PlanTree) -> Option<Quad> {
         let up = self.options.up;
-        let towards = if self.plan_cell.somewhere().dot(slab.normal) < slab.rho {
-            -slab.normal
+        let Bearing { normal, along } = slab.bearing;
+        let (towards, along) = if self.plan_cell.somewhere().dot(normal) < slab.rho {
+            (-normal, -along)
         } else {
-            slab.normal
+            (normal, along)
         };
         let right = towards.perp();
+        let (at, steep) = (normal * slab.rho, along.dot(towards));
         let axes = [right, DVec2::ZERO, towards].map(|a| up.place(a, 0.0));
         let axes = [axes[0], up.place(DVec2::ZERO, 1.0), axes[2]];
         let triangles = |numbers: &mut dyn Iterator<Item = u32>| {
@@ -143,17 +146,18 @@ impl Scene<'_> {
             all
         };
         let replaces = triangles(&mut slab.faces.iter().copied());
-        let origin = up.place(slab.normal * slab.rho, 0.0);
-        let mut quad = self.framed(origin, axes, replaces)?;
-        let limits = self.plan_cell.limits(slab.normal, self.options.limit);
+        let origin = up.place(at, 0.0);
+        let mut quad = self.framed(origin, axes, up.place(along, 0.0), replaces)?;
+        let limits = self.plan_cell.limits(slab.bearing, self.options.limit);
         let (low, high) = (
             quad.corner.dot(axes[0]),
             quad.corner.dot(axes[0]) + quad.size[0],
         );
         let shown = |&f: &u32| {
             let face = &faces[f as usize];
-            let along = || face.segments.iter().flatten().map(|p| p.dot(right));
-            let beside = along().all(|x| x < low) || along().all(|x| x > high);
+            let place = |&p: &DVec2| (p - along * ((p - at).dot(towards) / steep)).dot(right);
+            let places = || face.segments.iter().flatten().map(place);
+            let beside = places().all(|x| x < low) || places().all(|x| x > high);
             slab.faces.binary_search(&f).is_ok() || !beside && face.fits(&limits, slab.rho)
         };
         let mut near = tree.at(&limits, slab.rho);
@@ -202,7 +206,7 @@ impl Scene<'_> {
         let axes = axes.map(|(plan, height)| up.place(plan, height));
         let quad = |level: Level| {
             let origin = up.place(DVec2::ZERO, level.height);
-            let mut quad = self.framed(origin, axes, level.triangles)?;
+            let mut quad = self.framed(origin, axes, axes[2], level.triangles)?;
             quad.horizontal = true;
             let shown = |&&(interval, t): &&(Interval, u32)| {
                 interval.contains(level.height) || quad.replaces.binary_search(&t).is_ok()
@@ -213,9 +217,18 @@ impl Scene<'_> {
         levels.into_iter().filter_map(quad).collect()
     }
 
-    /// The rectangle of what a plane through `origin` replaces; `None` where it has no area.
-    fn framed(&self, origin: DVec3, axes: [DVec3; 3], replaces: Vec<u32>) -> Option<Quad> {
-        let corners = || replaces.iter().flat_map(|&t| self.mesh.corners(t as usize));
+    /// The rectangle of what a plane through `origin` replaces, projected `along` a direction; `None` where it has no area.
+    fn framed(
+        &self,
+        origin: DVec3,
+        axes: [DVec3; 3],
+        along: DVec3,
+        replaces: Vec<u32>,
+    ) -> Option<Quad> {
+        let corners = || {
+            let corners = replaces.iter().flat_map(|&t| self.mesh.corners(t as usize));
+            corners.map(|p| project(p, origin, axes[2], along))
+        };
         let range = |axis: DVec3| {
             corners().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
                 [low.min(p.dot(axis)), high.max(p.dot(axis))]
@@ -240,6 +253,7 @@ impl Scene<'_> {
         Some(Quad {
             corner: axes[0] * left + axes[1] * bottom + axes[2] * origin.dot(axes[2]),
             axes,
+            along,
             size,
             texels: size.map(|side| texels(side, distance, angle, most)),
             replaces,

@@ -23,8 +23,8 @@ pub struct Options {
     pub limit: Limit,
     /// Which axis points up.
     pub up: Up,
-    /// Directions of the grid of planes over half a turn, 1 to 4096; planes along walls and between the directions of
-    /// the grid are tried too.
+    /// Directions of the grid of planes over half a turn, 1 to 4096, where viewers bound the displacement each with nine
+    /// directions of projection; planes along walls and between the directions of the grid are tried too.
     pub directions: u32,
     /// Most texels in a row or column of a texture, 1 to 4096.
     pub texels: u32,

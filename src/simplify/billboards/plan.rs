@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Limit;
+use super::{Limit, bearing::Bearing};
 use crate::{
     Error, Result,
     bound::{
@@ -167,15 +167,17 @@ impl PlanCell {
         side.viewpoint(x)
     }
 
-    /// What limits projections along `direction`.
-    pub(super) fn limits(&self, direction: DVec2, limit: Limit) -> Limits {
+    /// What limits projections on planes of `bearing`; a distance is measured along their normal.
+    pub(super) fn limits(&self, bearing: Bearing, limit: Limit) -> Limits {
+        let Bearing { normal, along } = bearing;
         match limit {
             Limit::Angle(aperture) => {
-                let new = |side| Projection::new(side, direction, aperture);
-                Limits::Viewers(self.sides.iter().map(new).collect())
+                let new = |side| Projection::oblique(side, along, normal, aperture);
+                let sides: Result<Vec<Projection>> = self.sides.iter().map(new).collect();
+                sides.map_or(Limits::Parallel, Limits::Viewers)
             }
             Limit::Distance(distance) => Limits::Distance {
-                direction,
+                direction: normal,
                 distance,
             },
         }
@@ -274,6 +276,7 @@ impl PlanFace {
         let mut all = Interval::ALL;
         for &[a, b] in &self.segments {
             match limits {
+                Limits::Parallel => return Interval::NONE,
                 Limits::Viewers(sides) => {
                     for side in sides {
                         all = all.and(side.interval(a, b));
@@ -309,7 +312,7 @@ impl PlanFace {
     /// False only where the face may be projected on no plane at one of `offsets`.
     pub(super) fn may_reach(&self, limits: &Limits, offsets: Interval) -> bool {
         let Limits::Viewers(sides) = limits else {
-            return true;
+            return !matches!(limits, Limits::Parallel);
         };
         let [a, b] = self.segments[0];
         sides
@@ -318,11 +321,13 @@ impl PlanFace {
     }
 }
 
-/// A direction of projection and what limits it.
+/// What limits projections of one bearing.
 #[derive(Clone, Debug)]
 pub(super) enum Limits {
     /// The sides of a cell.
     Viewers(Vec<Projection>),
+    /// Nothing reaches planes along the direction of projection.
+    Parallel,
     /// A distance.
     Distance { direction: DVec2, distance: f64 },
 }

@@ -16,6 +16,8 @@ pub struct Quad {
     pub corner: DVec3,
     /// Unit vectors to the right, up, and towards the viewers.
     pub axes: [DVec3; 3],
+    /// Unit vector towards the viewers along which the scene is projected: the last of the axes, or slanted to it.
+    pub along: DVec3,
     /// Width and height.
     pub size: [f64; 2],
     /// Texels in a row and in a column.
@@ -44,11 +46,11 @@ impl Quad {
     /// Where a point of the scene is shown.
     #[must_use]
     pub fn project(&self, p: DVec3) -> DVec3 {
-        p - self.axes[2] * (p - self.corner).dot(self.axes[2])
+        project(p, self.corner, self.axes[2], self.along)
     }
 
-    /// What is drawn on it, straight from the front with a light at the viewer, as every picture of this crate; nothing
-    /// is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels + drawn).
+    /// What is drawn on it, seen along the direction of projection with a light at the viewer, as every picture of this
+    /// crate; nothing is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels + drawn).
     #[must_use]
     pub fn texture(&self, mesh: &Mesh) -> Texture {
         let picture = self.picture(mesh);
@@ -84,18 +86,22 @@ impl Quad {
         );
         let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
         let span = (high - low) * 1.25 + self.size[0].max(self.size[1]) * 1e-6;
+        let steep = self.along.dot(back);
         let row = |axis: DVec3, factor: f64, offset: f64| {
-            let r = axis * factor;
+            // Nothing changes along the direction of projection.
+            let r = (axis - back * (axis.dot(self.along) / steep)) * factor;
             [r.x, r.y, r.z, offset - r.dot(self.corner)]
         };
+        let r = -back / span;
+        let depth_row = [r.x, r.y, r.z, 0.1 + high / span - r.dot(self.corner)];
         let view = View {
             matrix: [
                 row(right, 2.0 / self.size[0], -1.0),
                 row(up, 2.0 / self.size[1], -1.0),
-                row(-back, 1.0 / span, 0.1 + high / span),
+                depth_row,
                 [0.0, 0.0, 0.0, 1.0],
             ],
-            eye: Eye::Axis(back),
+            eye: Eye::Axis(self.along),
             near: 0.0,
             far: span,
             cull: Cull::None,
@@ -116,6 +122,11 @@ impl Quad {
         let scene = Scene::new(positions, triangles, self.drawn.clone());
         raster::rgb(&scene.with_colors(colors(mesh, &self.drawn)), &view, &set)
     }
+}
+
+/// Where the line through `p` along `along` meets the plane through `origin` with the unit vector `normal`.
+pub(super) fn project(p: DVec3, origin: DVec3, normal: DVec3, along: DVec3) -> DVec3 {
+    p - along * ((p - origin).dot(normal) / along.dot(normal))
 }
 
 /// The mean colour of the covered texels around one that is not.

@@ -1,8 +1,11 @@
-//! Which planes: greedily the one that the most faces may be projected on, each refined between the directions of the
-//! grid, until no plane takes two faces.
+//! Which planes: greedily the one that takes faces of the most value, each refined between the bearings of the grid, until
+//! no plane takes two faces.
 //!
+//! A face is worth its share of the fullest plane of the grid that takes it: 1 / n where at most n go with it. So planes
+//! are chosen that few others could do without, and lonely faces while there is company for them. No plane of the grid is
+//! worth more than 1 then, so that the sum of the shares is also a bound below which no choice from the grid can go.
 //! Gains are integers and only shrink as faces are taken, so that a gain computed earlier is an upper bound and most
-//! directions need not be swept again. Unlike the billboard clouds of Décoret et al. 2003 there is no penalty for
+//! bearings need not be swept again. Unlike the billboard clouds of Décoret et al. 2003 there is no penalty for
 //! planes that cut through what they just miss: intervals are exact, there are no bins to cut. At last planes whose
 //! faces all find a place on others are dropped.
 
@@ -11,26 +14,28 @@ use rayon::prelude::*;
 
 use super::{
     Options,
+    bearing::{Bearing, Turn, grid, half_steps},
     plan::{Limits, PlanCell, PlanFace},
     sweep::{Stab, Sweep},
     tree::PlanTree,
 };
-use crate::{Progress, Result, bound::planar::Interval, num::math};
+use crate::{Progress, Result, bound::planar::Interval};
 
 /// A vertical plane and the faces that are projected on it.
 #[derive(Clone, Debug)]
 pub(super) struct Slab {
-    /// Unit normal in plan.
-    pub(super) normal: DVec2,
+    pub(super) bearing: Bearing,
     pub(super) rho: f64,
     /// Numbers of plan faces, each in one slab only, ascending.
     pub(super) faces: Vec<u32>,
 }
 
-/// Halvings of the angle between grid directions.
+/// Halvings of the steps of the grid.
 const HALVINGS: u32 = 12;
-/// Directions of walls are one where they differ by less than this, in radians.
-const SAME_DIRECTION: f64 = 1e-5;
+/// What a face is worth that goes with no other.
+const WHOLE: u64 = 1 << 32;
+/// How far a slant of one radian moves the offset of a face per distance from the middle of the plane, at most.
+const SLANT_REACH: f64 = 0.1;
 
 struct Selection<'a> {
     faces: &'a [PlanFace],
@@ -54,26 +59,29 @@ pub(super) fn select(
         tree,
         cell,
         options,
-        values: values(faces),
+        values: Vec::new(),
     };
-    let normals = directions(faces, options.directions);
-    progress.step("bound faces", 0, normals.len() as u64)?;
+    let bearings = grid(faces, options);
+    progress.step("bound faces", 0, bearings.len() as u64)?;
     let numbers = 0..faces.len() as u32;
-    let sweeps: Vec<Option<Sweep>> = normals
+    let sweeps: Vec<Option<Sweep>> = bearings
         .par_iter()
-        .map(|&normal| {
-            let limits = selection.limits(normal);
+        .map(|&bearing| {
+            let limits = selection.limits(bearing);
             let sweep = || Sweep::new(faces, numbers.clone(), &limits);
             (!progress.interrupted()).then(sweep)
         })
         .collect();
-    progress.step("bound faces", normals.len() as u64, normals.len() as u64)?;
+    progress.step("bound faces", bearings.len() as u64, bearings.len() as u64)?;
     let mut sweeps: Vec<Sweep> = sweeps.into_iter().flatten().collect();
+    selection.values = shares(&sweeps, faces.len());
     let mut stabs: Vec<Stab> = sweeps
         .par_iter_mut()
-        .map(|sweep| sweep.best(|face| selection.values[face as usize]))
+        .zip(&bearings)
+        .map(|(sweep, &bearing)| selection.best(sweep, bearing))
         .collect();
     let mut slabs: Vec<Slab> = Vec::new();
+    let mut alone = Vec::new();
     let mut left = faces.len();
     loop {
         progress.step(
@@ -81,103 +89,93 @@ pub(super) fn select(
             (faces.len() - left) as u64,
             faces.len() as u64,
         )?;
-        let Some(k) = most(&mut stabs, &mut sweeps, &selection.values) else {
+        let Some(k) = selection.most(&mut stabs, &mut sweeps, &bearings) else {
             break;
         };
-        let (normal, rho) = selection.refine(normals[k], stabs[k]);
-        let taken = selection.valid(normal, rho);
-        if taken.len() < 2 {
+        let (bearing, rho) = selection.refine(bearings[k], stabs[k]);
+        let taken = selection.valid(bearing, rho);
+        if taken.is_empty() {
             break;
         }
         left -= taken.len();
         for &face in &taken {
             selection.values[face as usize] = 0;
         }
+        if taken.len() < 2 {
+            alone.extend(taken);
+            continue;
+        }
         slabs.push(Slab {
-            normal,
+            bearing,
             rho,
             faces: taken,
         });
     }
-    let alone: Vec<u32> = (0..faces.len() as u32)
-        .filter(|&face| selection.values[face as usize] > 0)
-        .collect();
+    alone.extend((0..faces.len() as u32).filter(|&face| selection.values[face as usize] > 0));
+    alone.sort_unstable();
     let homes = selection.homes(&slabs);
     let alone = place(&mut slabs, &homes, alone);
     drop_superfluous(&mut slabs, &homes);
     Ok((slabs, alone))
 }
 
-/// The direction of the largest gain, brought up to date; `None` where nothing is gained.
-fn most(stabs: &mut [Stab], sweeps: &mut [Sweep], values: &[u64]) -> Option<usize> {
-    let mut fresh = vec![false; stabs.len()];
-    loop {
-        let mut k = 0;
-        for i in 1..stabs.len() {
-            if stabs[i].gain > stabs[k].gain {
-                k = i;
-            }
-        }
-        if stabs[k].gain == 0 {
-            return None;
-        }
-        if fresh[k] {
-            return Some(k);
-        }
-        stabs[k] = sweeps[k].best(|face| values[face as usize]);
-        fresh[k] = true;
-    }
-}
-
-/// The same for every face: as few planes as possible are wanted, and a small face alone costs one as a large one does.
-fn values(faces: &[PlanFace]) -> Vec<u64> {
-    vec![1; faces.len()]
-}
-
-/// The grid, then the directions across two walls or more, those of most walls first and at most as many again.
-fn directions(faces: &[PlanFace], count: u32) -> Vec<DVec2> {
-    let angle = |k: u32| (f64::from(k) + 0.5) * std::f64::consts::PI / f64::from(count);
-    let grid = (0..count).map(|k| unit(angle(k)));
-    let mut walls: Vec<(i64, DVec2)> = Vec::new();
-    for face in faces.iter().filter(|face| face.is_wall()) {
-        let [a, b] = face.segments[0];
-        let across = (b - a).perp();
-        let length = math::sqrt(across.dot(across));
-        if length > 0.0 {
-            let normal = across / length;
-            let upper = normal.y > 0.0 || (normal.y == 0.0 && normal.x > 0.0);
-            let normal = if upper { normal } else { -normal };
-            let bin = (math::atan2(normal.y, normal.x) / SAME_DIRECTION).round();
-            walls.push((bin as i64, normal));
-        }
-    }
-    walls.sort_by(|a, b| {
-        let order = a.0.cmp(&b.0).then(a.1.x.total_cmp(&b.1.x));
-        order.then(a.1.y.total_cmp(&b.1.y))
-    });
-    let mut groups: Vec<(usize, DVec2)> = walls
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|group| (group.len(), group[group.len() / 2].1))
-        .filter(|&(walls, _)| walls > 1)
-        .collect();
-    groups.sort_by_key(|&(walls, _)| std::cmp::Reverse(walls));
-    groups.truncate(count as usize);
-    grid.chain(groups.into_iter().map(|(_, normal)| normal))
+/// What every face is worth.
+fn shares(sweeps: &[Sweep], faces: usize) -> Vec<u64> {
+    let alone = || vec![1; faces];
+    let most = sweeps
+        .par_iter()
+        .fold(alone, |mut most, sweep| {
+            sweep.fullest(&mut most);
+            most
+        })
+        .reduce(alone, |mut a, b| {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a = b.max(*a));
+            a
+        });
+    most.into_iter()
+        .map(|most| WHOLE / u64::from(most))
         .collect()
 }
 
-fn unit(angle: f64) -> DVec2 {
-    DVec2::new(math::cos(angle), math::sin(angle))
-}
-
 impl Selection<'_> {
-    fn limits(&self, normal: DVec2) -> Limits {
-        self.cell.limits(normal, self.options.limit)
+    fn limits(&self, bearing: Bearing) -> Limits {
+        self.cell.limits(bearing, self.options.limit)
+    }
+
+    fn best(&self, sweep: &mut Sweep, bearing: Bearing) -> Stab {
+        let value = |face: u32| self.values[face as usize];
+        sweep.best(self.faces, &self.limits(bearing), value)
+    }
+
+    /// The bearing of the largest gain, brought up to date; `None` where nothing is gained.
+    fn most(
+        &self,
+        stabs: &mut [Stab],
+        sweeps: &mut [Sweep],
+        bearings: &[Bearing],
+    ) -> Option<usize> {
+        let mut fresh = vec![false; stabs.len()];
+        loop {
+            let mut k = 0;
+            for i in 1..stabs.len() {
+                if stabs[i].gain > stabs[k].gain {
+                    k = i;
+                }
+            }
+            if stabs[k].gain == 0 {
+                return None;
+            }
+            if fresh[k] {
+                return Some(k);
+            }
+            stabs[k] = self.best(&mut sweeps[k], bearings[k]);
+            fresh[k] = true;
+        }
     }
 
     /// The faces of some value that may be projected on a plane.
-    fn valid(&self, normal: DVec2, rho: f64) -> Vec<u32> {
-        let limits = self.limits(normal);
+    fn valid(&self, bearing: Bearing, rho: f64) -> Vec<u32> {
+        let limits = self.limits(bearing);
         self.tree
             .at(&limits, rho)
             .into_par_iter()
@@ -187,8 +185,8 @@ impl Selection<'_> {
     }
 
     /// A plane near the given one that takes at least as much.
-    fn refine(&self, normal: DVec2, stab: Stab) -> (DVec2, f64) {
-        let taken = self.valid(normal, stab.rho);
+    fn refine(&self, bearing: Bearing, stab: Stab) -> (Bearing, f64) {
+        let taken = self.valid(bearing, stab.rho);
         let middle = |face: u32| {
             let [a, b] = self.faces[face as usize].segments[0];
             (a + b) / 2.0
@@ -198,20 +196,21 @@ impl Selection<'_> {
             .map(|&face| middle(face))
             .fold(DVec2::ZERO, |a, b| a + b);
         let centre = sum / (taken.len().max(1) as f64);
-        let mut step = std::f64::consts::PI / f64::from(self.options.directions) / 2.0;
+        let mut step = half_steps(self.options);
         // Whatever a turn about the centre can reach.
-        let limits = self.limits(normal);
+        let reach = 3.0 * step.whole + SLANT_REACH * step.slant;
+        let limits = self.limits(bearing);
         let offsets = Interval {
             min: stab.rho,
             max: stab.rho,
         };
         let near: Vec<u32> = self
             .tree
-            .near(&limits, offsets, (6.0 * step, centre))
+            .near(&limits, offsets, (2.0 * reach, centre))
             .into_par_iter()
             .filter(|&face| self.values[face as usize] > 0)
             .filter(|&face| {
-                let slack = 3.0 * step * middle(face).distance(centre);
+                let slack = reach * middle(face).distance(centre);
                 let wanted = Interval {
                     min: stab.rho - 2.0 * slack,
                     max: stab.rho + 2.0 * slack,
@@ -223,27 +222,33 @@ impl Selection<'_> {
                 }
             })
             .collect();
-        let mut best = (stab.gain, normal, stab.rho);
-        let mut angle = math::atan2(normal.y, normal.x);
+        let mut best = (stab, bearing);
         for _ in 0..HALVINGS {
-            let tried: Vec<(Stab, DVec2)> = [angle - step, angle + step]
+            let Turn { whole, slant } = step;
+            let turns = [(-whole, 0.0), (whole, 0.0), (0.0, -slant), (0.0, slant)];
+            let tried: Vec<Option<(Stab, Bearing)>> = turns
                 .into_par_iter()
-                .map(|angle| {
-                    let normal = unit(angle);
-                    let limits = self.limits(normal);
+                .map(|(whole, slant)| {
+                    if whole == 0.0 && slant == 0.0 {
+                        return None;
+                    }
+                    let bearing = best.1.turned(Turn { whole, slant })?;
+                    let limits = self.limits(bearing);
                     let mut sweep = Sweep::new(self.faces, near.iter().copied(), &limits);
-                    (sweep.best(|face| self.values[face as usize]), normal)
+                    Some((self.best(&mut sweep, bearing), bearing))
                 })
                 .collect();
-            for (found, turned) in tried {
-                if found.gain > best.0 {
-                    best = (found.gain, turned, found.rho);
-                    angle = math::atan2(turned.y, turned.x);
+            for found in tried.into_iter().flatten() {
+                if found.0.gain > best.0.gain {
+                    best = found;
                 }
             }
-            step /= 2.0;
+            step = Turn {
+                whole: whole / 2.0,
+                slant: slant / 2.0,
+            };
         }
-        (best.1, best.2)
+        (best.1, best.0.rho)
     }
 
     /// For every face the planes that take it, in their order.
@@ -251,7 +256,7 @@ impl Selection<'_> {
         let taken: Vec<Vec<u32>> = slabs
             .par_iter()
             .map(|slab| {
-                let limits = self.limits(slab.normal);
+                let limits = self.limits(slab.bearing);
                 let mut near = self.tree.at(&limits, slab.rho);
                 near.retain(|&face| self.faces[face as usize].fits(&limits, slab.rho));
                 near
@@ -309,12 +314,62 @@ fn drop_superfluous(slabs: &mut Vec<Slab>, homes: &[Vec<u32>]) {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::{
+        bound::{cell::ViewCell, planar::Aperture},
+        mesh::generate::Pcg32,
+        simplify::billboards::Limit,
+    };
+
+    #[test]
+    fn a_plane_of_the_grid_is_worth_more_than_one_face_alone() {
+        let mut random = Pcg32::new(2007, 404);
+        let mut at = |size: f64| {
+            let mut x = || size * (2.0 * random.unit() - 1.0);
+            DVec2::new(x(), x())
+        };
+        let aperture = Aperture::degrees(2.0).expect("below 90");
+        let options = Options {
+            directions: 12,
+            ..Options::within(Limit::Angle(aperture))
+        };
+        let cell = ViewCell::segment([DVec3::ZERO, DVec3::X]).expect("two points");
+        let cell = PlanCell::new(&cell, options.up).expect("room");
+        let faces: Vec<PlanFace> = (0..200)
+            .map(|t| {
+                let (a, b) = (at(9.0) + DVec2::Y * 11.0, at(0.3));
+                PlanFace {
+                    segments: vec![[a, a + b]],
+                    triangles: vec![t],
+                    area: b.perp(),
+                }
+            })
+            .collect();
+        let bearings = grid(&faces, &options);
+        let limits = bearings
+            .iter()
+            .map(|&bearing| cell.limits(bearing, options.limit));
+        let limits: Vec<Limits> = limits.collect();
+        let sweep = |limits| Sweep::new(&faces, 0..200, limits);
+        let mut sweeps: Vec<Sweep> = limits.iter().map(sweep).collect();
+        let values = shares(&sweeps, faces.len());
+        let gains: Vec<u64> = sweeps
+            .iter_mut()
+            .zip(&limits)
+            .map(|(sweep, limits)| sweep.best(&faces, limits, |f| values[f as usize]).gain)
+            .collect();
+        // And the fullest ones are worth as much.
+        assert!(gains.iter().all(|&gain| gain <= WHOLE));
+        assert!(gains.iter().any(|&gain| gain > WHOLE - 200));
+        assert!(values.iter().all(|&value| value > 0));
+    }
 
     #[test]
     fn a_plane_whose_faces_all_have_another_place_is_dropped_and_a_face_goes_to_the_first_one() {
         let slab = |faces: &[u32]| Slab {
-            normal: DVec2::X,
+            bearing: Bearing::across(DVec2::X),
             rho: 0.0,
             faces: faces.to_vec(),
         };

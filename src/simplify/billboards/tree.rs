@@ -127,6 +127,7 @@ impl Limits {
     /// False only where no face with a point in a disc may be projected on a plane at one of `offsets`.
     fn may_reach_any(&self, disc: (DVec2, f64), offsets: Interval) -> bool {
         match self {
+            Self::Parallel => false,
             Self::Viewers(sides) => sides.iter().all(|side| side.may_reach_any(disc, offsets)),
             Self::Distance {
                 direction,
@@ -176,7 +177,10 @@ mod tests {
             let aperture = Aperture::degrees(degrees).expect("an angle");
             let turn = between(0.0, 6.3);
             let normal = DVec2::new(libm::cos(turn), libm::sin(turn));
-            let project = |cell| Projection::new(&cell, normal, aperture);
+            let slant = turn + between(-1.4, 1.4) * f64::from(u8::from(case % 2 == 0));
+            let along = DVec2::new(libm::cos(slant), libm::sin(slant));
+            let project =
+                |cell| Projection::oblique(&cell, along, normal, aperture).expect("not parallel");
             let limits = match case % 5 {
                 0..4 => Limits::Viewers(
                     cells

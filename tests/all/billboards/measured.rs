@@ -97,7 +97,7 @@ fn a_texel_of_a_pinned_scene_is_seen_too_far_from_what_it_shows() {
             let points = quad
                 .drawn
                 .iter()
-                .filter_map(|&t| behind(mesh.corners(t as usize), texel, quad.axes[2]));
+                .filter_map(|&t| behind(mesh.corners(t as usize), texel, quad.along));
             for p in points {
                 shown += 1;
                 let seen = |s: f64| angle(viewer(p.truncate(), s), p, texel);

@@ -1,0 +1,333 @@
+//! A face, viewers, and a projection: drawn so that every special case occurs, and judged by sampling viewers against
+//! points of the face.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
+use lodmark::mesh::generate::Pcg32;
+
+use super::seen::{angle, between, largest, largest_of_two};
+
+/// The special cases of section 5 and of appendices A to C. In the frame of one viewpoint at the origin with the
+/// direction along y, a face lies on the line y = m + x tan(g).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Class {
+    /// Anything.
+    Generic,
+    /// cos(theta + g) = 0, m not 0: the limit is a parabola (equation 12).
+    Parabola,
+    /// sin(theta + g) = 0, m not 0: a hyperbola of monotone branches.
+    Hyperbola,
+    /// m = 0: linear.
+    ThroughViewpoint,
+    /// m = 0 and cos(theta + g) = 0: the side of the cone is parallel to the direction.
+    ThroughViewpointAlongCone,
+    /// m = 0 and sin(theta + g) = 0: the limit is the x-axis.
+    ThroughViewpointFlat,
+    /// The face is seen edge-on along the direction.
+    EdgeOn,
+    /// And its line holds the viewpoint.
+    EdgeOnThroughViewpoint,
+    /// w1 + c w2 = 0 and the common max viewpoint is in the cell: linear all over.
+    OneTangentInside,
+    /// w1 + c w2 = 0 and the common max viewpoint is outside.
+    OneTangentOutside,
+    /// The face crosses the line of the cell beside it (appendix B).
+    Crossing,
+    /// The face touches the cell.
+    Touching,
+    /// The face lies in the line of the cell, beside it.
+    InLine,
+    /// The face is a point.
+    Point,
+    /// The direction is within the aperture of the cell's line (appendix A).
+    AlongCell,
+    /// The viewpoint is an end of the face.
+    ViewpointOnEnd,
+}
+
+pub(super) const CLASSES: [Class; 16] = [
+    Class::Generic,
+    Class::Parabola,
+    Class::Hyperbola,
+    Class::ThroughViewpoint,
+    Class::ThroughViewpointAlongCone,
+    Class::ThroughViewpointFlat,
+    Class::EdgeOn,
+    Class::EdgeOnThroughViewpoint,
+    Class::OneTangentInside,
+    Class::OneTangentOutside,
+    Class::Crossing,
+    Class::Touching,
+    Class::InLine,
+    Class::Point,
+    Class::AlongCell,
+    Class::ViewpointOnEnd,
+];
+
+#[derive(Debug)]
+pub(super) struct Case {
+    /// Ends of the cell; equal for one viewpoint.
+    pub(super) cell: [DVec2; 2],
+    /// The cell lies on the x-axis and goes on for ever beyond its second end.
+    pub(super) endless: bool,
+    pub(super) face: [DVec2; 2],
+    pub(super) direction: DVec2,
+    /// Of the lines that are projected on.
+    pub(super) normal: DVec2,
+    pub(super) theta: f64,
+}
+
+pub(super) fn turned(p: DVec2, turn: f64) -> DVec2 {
+    DVec2::from_angle(turn).rotate(p)
+}
+
+/// A case of a class, on lines across the direction.
+pub(super) fn draw(class: Class, random: &mut Pcg32) -> Case {
+    let theta = match random.bits() % 3 {
+        0 => between(random, 0.002, 0.03),
+        1 => between(random, 0.03, 0.3),
+        _ => between(random, 0.3, 1.4),
+    };
+    let side = if random.bits().is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    };
+    let far = |random: &mut Pcg32| {
+        let radius = between(random, 1.0, 10.0);
+        turned(DVec2::new(radius, 0.0), between(random, 0.0, TAU))
+    };
+    let (mut a, mut b) = (far(random), far(random));
+    let (mut from, mut to) = (DVec2::ZERO, DVec2::ZERO);
+    let mut up = DVec2::Y;
+    if random.bits().is_multiple_of(2) {
+        to = turned(
+            DVec2::new(between(random, 0.2, 5.0), 0.0),
+            between(random, 0.0, TAU),
+        );
+    }
+    // A face along `w`, at m over the viewpoint.
+    let along = |random: &mut Pcg32, w: DVec2, m: f64| {
+        let (s, t) = (between(random, -8.0, 8.0), between(random, -8.0, 8.0));
+        [DVec2::new(0.0, m) + w * s, DVec2::new(0.0, m) + w * t]
+    };
+    let m = side * between(random, 0.5, 6.0);
+    let (sin, cos) = theta.sin_cos();
+    match class {
+        Class::Generic => {
+            up = turned(up, between(random, 0.0, TAU));
+        }
+        Class::Parabola => [a, b] = along(random, DVec2::new(side * sin, cos), m),
+        Class::Hyperbola => [a, b] = along(random, DVec2::new(cos, -side * sin), m),
+        Class::ThroughViewpoint => {
+            let g = between(random, -1.5, 1.5);
+            [a, b] = along(random, DVec2::from_angle(g), 0.0);
+        }
+        Class::ThroughViewpointAlongCone => {
+            [a, b] = along(random, DVec2::new(side * sin, cos), 0.0)
+        }
+        Class::ThroughViewpointFlat => [a, b] = along(random, DVec2::new(cos, -side * sin), 0.0),
+        Class::EdgeOn => b.x = a.x,
+        Class::EdgeOnThroughViewpoint => (a.x, b.x) = (0.0, 0.0),
+        Class::OneTangentInside | Class::OneTangentOutside => {
+            // A cell on the x-axis; by the inscribed angle the circle of `up` touches it at the half-angle.
+            let gamma = between(random, 0.0, TAU);
+            up = DVec2::from_angle(gamma);
+            let c = ((theta + gamma) / 2.0).tan();
+            let (low, high) = (between(random, 0.5, 3.0), between(random, 3.5, 9.0));
+            let v = between(random, -1.0, 1.0);
+            a = DVec2::new(v - c * low, low);
+            b = DVec2::new(v - c * high, high);
+            let shift = if class == Class::OneTangentInside {
+                0.0
+            } else {
+                7.0
+            };
+            from = DVec2::new(shift - 2.0, 0.0);
+            to = DVec2::new(shift + 2.0, 0.0);
+        }
+        Class::Crossing => {
+            up = turned(up, between(random, 0.0, TAU));
+            (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
+            a = DVec2::new(between(random, 4.0, 8.0), between(random, 0.5, 4.0));
+            b = DVec2::new(between(random, 4.0, 8.0), -between(random, 0.5, 4.0));
+        }
+        Class::Touching => {
+            up = turned(up, between(random, 0.0, TAU));
+            (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
+            let contact = DVec2::new(between(random, 0.1, 2.9), 0.0);
+            a = contact + DVec2::new(between(random, -3.0, 3.0), between(random, 0.5, 4.0));
+            b = contact + (contact - a) * between(random, 0.1, 1.0);
+        }
+        Class::InLine => {
+            up = turned(up, between(random, 0.0, TAU));
+            (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
+            a = DVec2::new(between(random, 3.5, 9.0), 0.0);
+            b = DVec2::new(between(random, 3.5, 9.0), 0.0);
+        }
+        Class::Point => {
+            up = turned(up, between(random, 0.0, TAU));
+            b = a;
+        }
+        Class::AlongCell => {
+            let axis = turned(DVec2::X, between(random, 0.0, TAU));
+            (from, to) = (DVec2::ZERO, axis * 4.0);
+            up = turned(-axis * side, between(random, -theta, theta));
+        }
+        Class::ViewpointOnEnd => {
+            up = turned(up, between(random, 0.0, TAU));
+            a = DVec2::ZERO;
+        }
+    }
+    // The same scene somewhere else; a quarter stay where the coordinates are exact.
+    let (turn, by) = match random.bits() % 4 {
+        0 => (0.0, DVec2::ZERO),
+        _ => (between(random, 0.0, TAU), far(random) * 3.0),
+    };
+    let place = |p: DVec2| if turn == 0.0 { p } else { turned(p, turn) + by };
+    Case {
+        cell: [place(from), place(to)],
+        endless: false,
+        face: [place(a), place(b)],
+        direction: turned(up, turn),
+        normal: turned(up, turn),
+        theta,
+    }
+}
+
+pub(super) const SCALE: f64 = 10.0;
+
+impl Case {
+    pub(super) fn interval(&self) -> Interval {
+        let [a, b] = self.cell;
+        let cell = if self.endless {
+            SegmentCell::on_x_axis(a.x, (b.x - a.x) * f64::INFINITY)
+        } else {
+            SegmentCell::between(a, b).expect("finite ends")
+        };
+        let aperture = Aperture::radians(self.theta).expect("drawn below a right angle");
+        let projection = if self.normal == self.direction {
+            Projection::new(&cell, self.direction, aperture)
+        } else {
+            Projection::oblique(&cell, self.direction, self.normal, aperture).expect("not parallel")
+        };
+        projection.interval(self.face[0], self.face[1])
+    }
+
+    /// Offset along the normal per way along the direction.
+    pub(super) fn scale(&self) -> f64 {
+        if self.normal == self.direction {
+            1.0
+        } else {
+            self.direction.dot(self.normal)
+        }
+    }
+
+    fn viewpoint(&self, s: f64) -> DVec2 {
+        let way = if self.endless {
+            s / (1.0 - s * 0.999_999)
+        } else {
+            s
+        };
+        self.cell[0] + (self.cell[1] - self.cell[0]) * way
+    }
+
+    pub(super) fn point(&self, t: f64) -> DVec2 {
+        self.face[0] + (self.face[1] - self.face[0]) * t
+    }
+
+    /// The distance between face and cell.
+    fn gap(&self) -> f64 {
+        let ([a, b], [c, d]) = (self.face, self.cell);
+        let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p) > 0.0;
+        if side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b) {
+            return 0.0;
+        }
+        let to = |p: DVec2, q: DVec2, r: DVec2| {
+            let along = r - q;
+            let t = (p - q).dot(along) / along.length_squared().max(1e-300);
+            p.distance(q + along * t.clamp(0.0, 1.0))
+        };
+        to(a, c, d)
+            .min(to(b, c, d))
+            .min(to(c, a, b))
+            .min(to(d, a, b))
+    }
+
+    /// The angle by which the viewer at `s` of the cell sees the point at `t` of the face move to offset `rho`, 0 where
+    /// that is not in the sense of `sign`.
+    fn angle(&self, [s, t]: [f64; 2], rho: f64, sign: f64) -> f64 {
+        let (v, p, scale) = (self.viewpoint(s), self.point(t), self.scale());
+        let way = rho - p.dot(self.normal);
+        if way * sign < 1e-12 * SCALE * scale.abs() {
+            return 0.0;
+        }
+        if p.distance(v) < 1e-12 * SCALE {
+            // A point at a viewpoint must not move at all.
+            return std::f64::consts::PI;
+        }
+        angle(v, p, p + self.direction * (way / scale))
+    }
+
+    /// The largest such angle of a sampled viewer and a sampled point, and the parameters of both; `finer` samples more
+    /// densely.
+    fn seen(&self, rho: f64, sign: f64, finer: u32) -> (f64, [f64; 2]) {
+        largest_of_two(
+            |s, t| self.angle([s, t], rho, sign),
+            match (self.cell[0] == self.cell[1], self.gap() < 0.2) {
+                (true, _) => [0, 300 * finer],
+                (false, false) => [16 * finer, 24 * finer],
+                (false, true) => [32 * finer, 48 * finer],
+            },
+            4 * finer as usize,
+        )
+    }
+
+    /// As [`Case::seen`], slowly: the best viewer for every point, for ridges too narrow to be followed.
+    fn seen_point_by_point(&self, rho: f64, sign: f64) -> f64 {
+        let worst = |t: f64| largest(|s| self.angle([s, t], rho, sign), 200).0;
+        largest(worst, 100).0
+    }
+
+    /// Panics where sampling contradicts the claim that `rho` is the last valid offset in the sense of `sign`; gives the
+    /// parameter of the face point that limits it.
+    pub(super) fn judge(&self, name: &str, number: u32, rho: f64, sign: f64) -> f64 {
+        let size = SCALE * self.scale().abs();
+        let what = || format!("{name} {number}: rho {rho} toward {sign}, {self:?}");
+        // Where a side of the cone is parallel to the direction but for rounding, the limit is as far.
+        if rho.abs() > 1e9 * size {
+            assert!(rho * sign > 0.0, "{}", what());
+            for far in [1.0, 30.0, 1e4, 1e6] {
+                let start = self.point(0.0).dot(self.normal);
+                let (seen, _) = self.seen(start + sign * far * size, sign, 1);
+                assert!(
+                    seen <= self.theta * (1.0 + 1e-9) + 1e-9,
+                    "{}: {seen} at {far}",
+                    what()
+                );
+            }
+            return 0.0;
+        }
+        let inside = rho - sign * 1e-9 * size;
+        let (seen, [_, t]) = self.seen(inside, sign, 1);
+        assert!(
+            seen <= self.theta * (1.0 + 1e-9) + 1e-12,
+            "{}: {seen}",
+            what()
+        );
+        // Near a contact the angle jumps: only viewers and points within about the step of it see anything.
+        let floor = if self.gap() < 0.2 { 1e-2 } else { 1e-8 };
+        let found = [1, 2, 8, 40].into_iter().any(|finer| {
+            let (_, [_, t]) = self.seen(inside, sign, finer);
+            let extent = (rho - self.point(t).dot(self.normal)).abs();
+            let step = 1e-4 * extent + floor * size;
+            let beyond = rho + sign * step;
+            self.seen(beyond, sign, finer).0 > self.theta
+                || finer == 40 && self.seen_point_by_point(beyond, sign) > self.theta
+        });
+        assert!(found, "{}: nobody sees too much beyond the claim", what());
+        t
+    }
+}
