@@ -328,6 +328,34 @@ fn what_viewers_stand_in_is_moved() {
 }
 
 #[test]
+fn a_slope_over_viewers_without_a_width_is_moved_through_them() {
+    let plate = |z: [f64; 4]| {
+        let at = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let corners = (0..4).map(|i| DVec3::new(at[i][0], at[i][1], z[i]));
+        Mesh::from_triangles(corners.collect(), vec![[0, 1, 2], [0, 2, 3]]).expect("valid")
+    };
+    let cells = [
+        ViewCell::segment([DVec3::new(-0.3, 0.1, 0.0), DVec3::new(0.4, 0.2, 0.0)]).expect("two"),
+        ViewCell::line(DVec3::new(0.0, 0.3, 0.0), DVec3::X).expect("a direction"),
+        ViewCell::point(DVec3::new(0.2, 0.1, 0.0)).expect("finite"),
+        ViewCell::point(DVec3::new(1.0, 0.5, 0.0)).expect("finite"),
+    ];
+    for cell in &cells {
+        for z in [[1.0, 1.0, 2.0, 2.0], [1.0, 1.5, 1.25, 3.0]] {
+            for degrees in [1.0, 89.9999] {
+                let cloud = cloud(&plate(z), cell, &within(degrees));
+                assert!(
+                    cloud.displacement.horizontal <= f64::to_radians(degrees) * (1.0 + 1e-9),
+                    "{cell:?}, {degrees}: {:?}",
+                    cloud.displacement
+                );
+                assert!(!cloud.kept.is_empty(), "{cell:?}, {degrees}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_cell_that_covers_the_ground_is_taken() {
     let mesh = blocks(2);
     let above = ViewCell::half_space(DVec3::new(0.0, 0.0, 20.0), DVec3::new(0.0, 0.0, -1.0))

@@ -134,11 +134,14 @@ impl PlanCell {
         }
     }
 
-    /// True where part of the convex hull of `points` lies among the viewers, its border included; a cell without an
-    /// inside holds nothing.
+    /// True where part of the convex hull of `points` lies among the viewers, its border included. A cell without an
+    /// inside meets triangles that are no wall; walls are told by their intervals.
     pub(super) fn meets(&self, points: &[DVec2]) -> bool {
         match &self.inside {
-            Inside::Nothing => false,
+            Inside::Nothing => match *points {
+                [a, b, c] => self.sides.iter().any(|side| stands_in(side, [a, b, c])),
+                _ => false,
+            },
             Inside::HalfPlane { point, normal } => {
                 points.iter().any(|p| (p - point).dot(*normal) <= 0.0)
             }
@@ -202,6 +205,32 @@ fn separated(polygon: &[DVec2], points: &[DVec2]) -> bool {
                 && all(sign, points, scale)
         })
     })
+}
+
+/// True where viewers on a segment stand in a triangle that is no segment itself, its border included.
+fn stands_in(side: &SegmentCell, corners: [DVec2; 3]) -> bool {
+    let [a, b, c] = corners.map(|p| side.enter(p));
+    if (b - a).perp_dot(c - a) == 0.0 {
+        return false;
+    }
+    // Where the triangle's border meets the axis of the segment.
+    let meetings = [(a, b), (b, c), (c, a)].into_iter().filter_map(|(p, q)| {
+        let apart = (p.y > 0.0 && q.y > 0.0) || (p.y < 0.0 && q.y < 0.0);
+        let along = p.y / (p.y - q.y);
+        (!apart).then(|| {
+            if along.is_finite() {
+                [p.x + (q.x - p.x) * along; 2]
+            } else {
+                [p.x.min(q.x), p.x.max(q.x)]
+            }
+        })
+    });
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let [low, high] = meetings.fold(none, |[low, high], [from, to]| {
+        [low.min(from), high.max(to)]
+    });
+    let [first, last] = side.ends();
+    low <= last && first <= high
 }
 
 fn segment_distance(side: &SegmentCell, a: DVec2, b: DVec2) -> f64 {
