@@ -289,17 +289,15 @@ impl Options {
     }
 
     fn image(&self, preset: Preset) -> ImageOptions {
-        let default = preset.options();
+        let default = preset.shaded(match self.shading {
+            None | Some(ShadingName::Flat) => DrivingShading::Flat,
+            Some(ShadingName::Gouraud) => DrivingShading::Gouraud,
+            Some(ShadingName::Mixed) => DrivingShading::Mixed,
+        });
         ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
             size: self.size.map_or(default.size, Size::Pixels),
             samples: self.samples.unwrap_or(default.samples),
-            shading: match self.shading {
-                None => default.shading,
-                Some(ShadingName::Flat) => DrivingShading::Flat,
-                Some(ShadingName::Gouraud) => DrivingShading::Gouraud,
-                Some(ShadingName::Mixed) => DrivingShading::Mixed,
-            },
             interior_views: self.interior_views.unwrap_or(default.interior_views),
             start: self.start_triangles.unwrap_or(default.start),
             polish: Polish {

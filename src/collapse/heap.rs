@@ -7,7 +7,8 @@ use super::NONE;
 /// What orders the queue: total, and independent of everything but the mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// Change of the image error, an exact integer; 0 for methods without images.
+    /// Change of the image error, an exact integer, and what the method charges for geometry; 0 for methods without
+    /// images.
     pub image: i64,
     /// Geometric cost; integer image costs tie massively.
     pub geometric: f64,

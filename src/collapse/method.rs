@@ -77,7 +77,8 @@ impl<'a> Site<'a> {
 pub struct Proposal {
     /// Where the new vertex lies.
     pub position: Admitted,
-    /// First key: change of the image error; 0 for methods without images. May be negative.
+    /// First key: change of the image error, and what the method charges for geometry beside it; 0 for methods without
+    /// images. May be negative.
     pub image: i64,
     /// Second key: the geometric cost; keeps hidden parts, whose image cost is 0, in shape.
     pub geometric: f64,

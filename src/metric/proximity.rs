@@ -112,6 +112,14 @@ impl Proximity {
         best
     }
 
+    /// The point of the triangles nearest to `p`, and the index of a triangle that has it. `near` as for
+    /// [`Proximity::squared_distance`], but it may decide between points at the same distance.
+    #[must_use]
+    pub fn nearest(&self, p: DVec3, near: u32) -> (DVec3, u32) {
+        let (_, index) = self.squared_distance(p, near);
+        (self.triangles[index as usize].closest(p).0, index)
+    }
+
     /// True where a triangle within the root of `squared` of `p` has a normal along `direction`: their product is
     /// positive.
     pub(super) fn looks_along(&self, p: DVec3, direction: DVec3, squared: f64) -> bool {

@@ -1,11 +1,13 @@
 //! From a mesh and options to an outcome.
 
+use rayon::prelude::*;
+
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
     fallback::Contest,
     image::{
-        self, Deviation, EngineName, HeldOut, ImageDriven, ImageOptions, Limits, Pictures,
-        PolishCounters, Start,
+        self, Deviation, EngineName, HeldOut, ImageDriven, ImageOptions, Limits, PictureScratch,
+        Pictures, PolishCounters, Start,
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
@@ -18,7 +20,8 @@ use crate::{
     Error, Progress, Result,
     bound::correspondence::Correspondence,
     collapse::{
-        Counters, Divisible, End, Engine, LiveMesh, Method, Recorder, Target, Tiling, thin,
+        Counters, Divisible, End, Engine, LiveMesh, Method, Observer, Patch, Recorder, Target,
+        Tiling, thin,
     },
     mesh::Mesh,
     metric::Sides,
@@ -133,6 +136,20 @@ fn in_pool(
             in_pool(mesh, options, None, progress)
         }),
         None => Ok(outcome),
+    }
+}
+
+/// Lets pictures follow, and a history record, what is done to a mesh without a look at them.
+struct Following<'a, E: Unrender> {
+    pictures: &'a mut Pictures<E>,
+    scratch: PictureScratch<E::Scratch>,
+    recorder: &'a mut Recorder,
+}
+
+impl<E: Unrender> Observer for Following<'_, E> {
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.pictures.commit(live, patch, &mut self.scratch);
+        self.recorder.committed(live, patch);
     }
 }
 
@@ -263,6 +280,12 @@ impl<'a> Run<'a> {
                 start: self.live.to_mesh().map_err(Error::Internal)?,
             });
         }
+        let sides = Sides::new(&original);
+        let surface = sides.as_ref().map(Sides::surface);
+        let deviation = |live: &LiveMesh, weight| Deviation::new(surface?, live, weight);
+        let sum = method.error().sum() as f64;
+        let price = deviation(&self.live, own.swept_weight).map_or(0.0, |d| d.price(sum));
+        let method = method.with_swept_price(price);
         let before = (self.live.triangle_count(), Counters::default());
         let (end, method) = self.phase("image", method, target, before)?;
         let mut pictures = method.into_pictures();
@@ -274,10 +297,29 @@ impl<'a> Run<'a> {
                 let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
                 Some(Pictures::<E>::new(&scene, live, &set))
             };
-            let sides = Sides::new(&original);
-            let surface = sides.as_ref().map(Sides::surface);
-            let weight = own.polish.deviation_weight;
-            let deviation = surface.and_then(|s| Deviation::new(s, &self.live, weight));
+            // What collapses turned over, polishing only keeps from getting worse. Turning back looks at no picture.
+            let turned = self.options.error_rms.is_none()
+                && sides.as_ref().is_some_and(|sides| {
+                    let faces = (0..self.live.triangle_ids()).into_par_iter();
+                    let corners = faces.filter_map(|t| self.live.points(t));
+                    corners.any(|face| sides.is_flipped(face))
+                });
+            if turned {
+                let mut following = Following {
+                    scratch: pictures.lone_scratch(),
+                    pictures: &mut pictures,
+                    recorder: &mut self.recorder,
+                };
+                let rules = self.options.rules;
+                unfold(
+                    &mut self.live,
+                    self.mesh,
+                    rules,
+                    &mut following,
+                    self.progress,
+                )?;
+            }
+            let deviation = deviation(&self.live, own.polish.deviation_weight);
             let counters;
             (pictures, counters) = image::polish(
                 &mut self.live,

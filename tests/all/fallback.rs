@@ -24,6 +24,7 @@ fn blind(triangles: u64) -> Options {
         ..ImageOptions::default()
     };
     own.polish.sweeps = 4;
+    own.swept_weight = 0.0;
     own.polish.deviation_weight = 0.0;
     options.method = MethodOptions::Image(own);
     options

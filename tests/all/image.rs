@@ -8,6 +8,7 @@ use lodmark::{
         Topology,
     },
     mesh::{Mesh, canonical, generate},
+    num::math,
     raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
@@ -47,7 +48,7 @@ impl Method for Watched {
     }
 }
 
-fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
+fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watched {
     let inner = ImageDriven::new(
         &Scene::of(original),
         live,
@@ -55,7 +56,10 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Watched {
         MemorylessOptions::default(),
         None,
     );
-    Watched { inner, last: None }
+    Watched {
+        inner: inner.with_swept_price(price),
+        last: None,
+    }
 }
 
 /// Sum of squared luma differences, by drawing everything.
@@ -213,7 +217,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (view_name, set) in view_sets(&sphere) {
             let live = LiveMesh::new(&mesh, frame);
-            let method = method(&original, &live, &set);
+            let method = method(&original, &live, &set, 0.0);
             let mut engine = Engine::new(live, method, rules(mesh_name), Schedule::Lazy);
             let mut steps = 0;
             while engine.live().triangle_count() > 4 && steps < 24 {
@@ -262,11 +266,12 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (view_name, set) in view_sets(&sphere).into_iter().step_by(3) {
             let mut live = LiveMesh::new(&mesh, frame);
-            for _ in 0..4 {
+            // The published cost, and twice with swept volume charged for.
+            for price in [0.0, 0.0, 3e3, 1e6] {
                 let now = live.to_mesh().expect("valid").enter_frame(frame);
                 let before = error(&original, &now, &set);
                 // (1) Every legal collapse, judged by drawing the whole result.
-                let mut cheapest: Option<(i64, f64, f64, [u32; 2])> = None;
+                let mut cheapest: Option<((i64, f64, f64, [u32; 2]), i64)> = None;
                 for edge in (0..live.edge_ids()).filter(|&e| live.edge(e).is_some()) {
                     let mut ring = Ring::default();
                     ring.gather(&live, edge);
@@ -285,15 +290,18 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                     let cost = error(&original, &result, &set) - before;
                     let ends = live.edge(edge).expect("in use");
                     let d = live.position(ends[1]) - live.position(ends[0]);
-                    let key = (cost, proposal.geometric, d.dot(d), ends);
-                    if cheapest.is_none_or(|c| key < c) {
-                        cheapest = Some(key);
+                    let charged = cost + (price * math::sqrt(proposal.geometric)) as i64;
+                    let key = (charged, proposal.geometric, d.dot(d), ends);
+                    if cheapest.is_none_or(|(least, _)| key < least) {
+                        cheapest = Some((key, cost));
                     }
                 }
-                let Some(cheapest) = cheapest else { break };
+                let Some((cheapest, cost)) = cheapest else {
+                    break;
+                };
                 // (2) What the engine takes first.
                 let triangles = live.triangle_count();
-                let method = method(&original, &live, &set);
+                let method = method(&original, &live, &set, price);
                 let mut engine =
                     Engine::new(live.clone(), method, rules(mesh_name), Schedule::Eager);
                 let mut taken = Taken::default();
@@ -311,7 +319,7 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 assert_eq!(taken.0, Some(cheapest.3), "{mesh_name}, {view_name}");
                 assert_eq!(
                     engine.method().inner.error().sum() as i64 - before,
-                    cheapest.0,
+                    cost,
                     "{mesh_name}, {view_name}"
                 );
                 live = engine.into_parts().0;

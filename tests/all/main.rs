@@ -9,6 +9,7 @@ mod cli;
 mod collapse;
 mod compare;
 mod correspondence;
+mod deviation;
 mod edge_cases;
 mod embree;
 mod envelope;

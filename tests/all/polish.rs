@@ -63,7 +63,7 @@ fn polished<E: Unrender>(
 }
 
 /// The mesh with every vertex pushed aside by up to `amount`.
-fn pushed(mesh: &Mesh, amount: f64, seed: u64) -> Mesh {
+pub(crate) fn pushed(mesh: &Mesh, amount: f64, seed: u64) -> Mesh {
     let mut random = shapes::Random(seed);
     let mut parts = mesh.clone().into_parts();
     for p in &mut parts.positions {

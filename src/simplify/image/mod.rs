@@ -3,7 +3,8 @@
 //! Edges collapse in the order of what their collapse does to the pictures: the cost is equation 8, the change of the
 //! sum of squared luma differences over all views, as an exact integer that may be negative and is not clamped. The new
 //! vertex is placed by the memoryless method (section 4.1), whose own cost is the second key: hidden edges all cost 0,
-//! and it keeps hidden parts in shape. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
+//! and it keeps hidden parts in shape. But for the paper's preset, volume that a collapse sweeps is charged for as well:
+//! see [`ImageDriven::with_swept_price`]. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
 //! the preset is the paper's; the pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
 //! and flips, which the paper does not have, comes after the last collapse.
 
@@ -29,6 +30,7 @@ pub use preset::Preset;
 use super::memoryless::{self, MemorylessOptions};
 use crate::{
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    num::math::sqrt,
     raster::{Scene, Unrender},
     view::ViewSet,
 };
@@ -40,6 +42,8 @@ pub struct ImageDriven<E: Unrender> {
     placement: MemorylessOptions,
     /// Largest sum of squared differences that a collapse may lead to.
     limit: Option<f64>,
+    /// What a unit of swept volume adds to the first key.
+    swept_price: f64,
     scratch: PictureScratch<E::Scratch>,
 }
 
@@ -67,7 +71,17 @@ impl<E: Unrender> ImageDriven<E> {
             scratch: pictures.lone_scratch(),
             pictures,
             placement,
+            swept_price: 0.0,
         }
+    }
+
+    /// Charges `price` units of image error for every unit of volume (frame units cubed) that a collapse sweeps, the root
+    /// of its memoryless cost: what few pictures show would else be given up first, however far from the original that
+    /// leads. 0, the published method, unless asked for.
+    #[must_use]
+    pub fn with_swept_price(mut self, price: f64) -> Self {
+        self.swept_price = price;
+        self
     }
 
     /// The pictures and their distance from the original's.
@@ -105,6 +119,8 @@ impl<E: Unrender> Method for ImageDriven<E> {
         let ImageScratch { pictures, patch } = scratch;
         site.patch(proposal.position, patch);
         let image = self.pictures.cost(site.live, patch, pictures);
+        let swept = self.swept_price * sqrt(proposal.geometric.max(0.0));
+        let image = image.saturating_add(swept as i64);
         Ok(Proposal { image, ..proposal })
     }
 

@@ -1,4 +1,5 @@
-//! Where a vertex should go: a search along its normal and two tangents, judged by the pictures.
+//! Where a vertex should go: a search along its normal and two tangents, judged by the pictures, and where it would be
+//! near the original with all of its faces.
 
 use glam::DVec3;
 
@@ -12,6 +13,9 @@ use crate::{
 /// Farthest that a parabola is followed along one axis, in steps.
 const REACH: f64 = 2.0;
 
+/// Farthest that a vertex goes for the surface, as a share of the mean length of its edges.
+const FARTHEST: f64 = 0.3;
+
 /// Buffers of one thread.
 #[derive(Debug)]
 pub(super) struct Search<S> {
@@ -23,7 +27,8 @@ pub(super) struct Search<S> {
 /// What a search found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Found {
-    /// The better position, and what going there would add to the error (negative), if there is one.
+    /// The better position, and what going there would add to the error, if there is one: negative unless the surface is
+    /// worth it.
     pub(super) better: Option<(DVec3, i64)>,
     /// Positions whose pictures were drawn.
     pub(super) evaluations: u64,
@@ -55,7 +60,8 @@ impl<S> Search<S> {
     /// angle of the tangents.
     ///
     /// Both ways along every axis, and then where the parabolas through the costs along the axes are lowest (at most
-    /// [`REACH`] steps away along each): a step of Newton's method with a diagonal matrix. The best of all that.
+    /// [`REACH`] steps away along each): a step of Newton's method with a diagonal matrix. The best of all that, and
+    /// where the surface counts, what [`Search::weigh`] finds beside it.
     pub(super) fn run<E: Unrender<Scratch = S>>(
         &mut self,
         live: &LiveMesh,
@@ -89,14 +95,61 @@ impl<S> Search<S> {
             }
         }
         self.try_position(live, pictures, rules, lowest, &mut found);
-        let sum = pictures.error().sum() as f64;
-        if let Some((to, cost)) = found.better
-            && self.prepare(live, to, rules).is_some()
-            && !limits.admit(live, &self.patch, -cost as f64, sum)
-        {
-            found.better = None;
-        }
+        let image = found.better.take();
+        self.weigh(live, pictures, limits, (image, normal), &mut found);
         found
+    }
+
+    /// The best of the position that is best for the pictures, that which [fits](super::Deviation::fit) the surface, the
+    /// middle of the two, and the one's place along the tangents with the other's height.
+    fn weigh<E: Unrender<Scratch = S>>(
+        &mut self,
+        live: &LiveMesh,
+        pictures: &Pictures<E>,
+        limits: Limits<'_>,
+        (image, normal): (Option<(DVec3, i64)>, DVec3),
+        found: &mut Found,
+    ) {
+        let sum = pictures.error().sum() as f64;
+        let origin = self.star.point;
+        let fit = limits.deviation.and_then(|d| d.fit(live, &self.star));
+        let fit = fit.map(|step| {
+            let [far, most] = [math::length(step), FARTHEST * self.star.mean_edge(live)];
+            if far > most {
+                step * (most / far)
+            } else {
+                step
+            }
+        });
+        let between = image.zip(fit).map(|((to, _), fit)| {
+            let step = to - origin;
+            [
+                origin + (step - normal * step.dot(normal)) + normal * fit.dot(normal),
+                origin + (step + fit) * 0.5,
+            ]
+        });
+        let candidates = [
+            image.map(|(to, cost)| (to, Some(cost))),
+            fit.map(|step| (origin + step, None)),
+            between.map(|[to, _]| (to, None)),
+            between.map(|[_, to]| (to, None)),
+        ];
+        let mut before = None;
+        let mut best = (0.0, 0);
+        for (to, cost) in candidates.into_iter().flatten() {
+            let Some(to) = self.prepare(live, to, limits.rules) else {
+                continue;
+            };
+            let cost = cost.unwrap_or_else(|| {
+                found.evaluations += 1;
+                pictures.cost(live, &self.patch, &mut self.pictures)
+            });
+            let balance = limits.balance(live, &self.patch, (cost, sum), &mut before);
+            if (balance, cost) < best && limits.keeps_sides(live, &self.patch) {
+                best = (balance, cost);
+                found.better = Some((to, cost));
+            }
+        }
     }
 
     /// The cost at a position, where it is allowed; remembers the best.

@@ -158,6 +158,12 @@ pub struct ImageOptions {
     pub engine: EngineName,
     /// Placement of the new vertex (section 4.1).
     pub placement: MemorylessOptions,
+    /// How much the share of the deviation from the original that the volume swept by a collapse makes weighs against
+    /// the share of the image error; 0 is the published method. See [`ImageDriven::with_swept_price`].
+    ///
+    /// [`ImageDriven::with_swept_price`]: super::ImageDriven::with_swept_price
+    #[serde(default)]
+    pub swept_weight: f64,
     /// What follows the last collapse.
     #[serde(default)]
     pub polish: Polish,
@@ -191,6 +197,16 @@ impl ImageOptions {
                 "{} samples per pixel along each axis; expected 1, 2 or 4",
                 self.samples
             )));
+        }
+        for (name, weight) in [
+            ("swept-weight", self.swept_weight),
+            ("deviation-weight", self.polish.deviation_weight),
+        ] {
+            if !(0.0..f64::INFINITY).contains(&weight) {
+                return Err(Error::Usage(format!(
+                    "{name} is {weight}; expected a number that is not negative"
+                )));
+            }
         }
         if let Some(s) = self.specular {
             let strength = s.strength >= 0.0 && s.strength <= 1.0;

@@ -4,7 +4,8 @@
 //! Not in the papers. Sweeps visit the vertices by ascending id; a vertex tries positions along its normal and two
 //! tangents at a distance that halves whenever none of them is better. Every few sweeps all edges are tried for a flip,
 //! and the cameras are turned as a whole and the original drawn again, so that the mesh fits the model and not the
-//! noise of one set of pictures. Every change that is kept lowers the error of the pictures of that moment, exactly.
+//! noise of one set of pictures. Every change that is kept lowers the error of the pictures of that moment, exactly, or
+//! where the surface counts too, brings a vertex so much nearer to the original that it is worth an error.
 //!
 //! Vertices are searched in batches of neighbours' strangers, each against the same pictures; then the batch is
 //! committed one by one, and what an earlier one has made worse is taken back. Batches do not depend on the number of
@@ -46,26 +47,40 @@ pub struct Polish {
 pub struct Limits<'a> {
     /// As for collapses.
     pub rules: Rules,
-    /// What a change must pay for.
+    /// How near the original a change should stay, and what being nearer is worth.
     pub deviation: Option<&'a Deviation<'a>>,
     /// The sides of the original, which no face may turn its back on.
     pub sides: Option<&'a Sides>,
 }
 
 impl Limits<'_> {
-    /// Whether a change that lowers the error `sum` by `gain` is within the limits that are dear to test.
-    pub(super) fn admit(&self, live: &LiveMesh, patch: &Patch, gain: f64, sum: f64) -> bool {
-        self.deviation
-            .is_none_or(|d| d.pays(live, patch, gain, sum))
-            && self.sides.is_none_or(|sides| {
-                let faces = patch.added.iter();
-                let flipped = faces
-                    .filter(|f| sides.is_flipped(patch.after(live, f)))
-                    .count();
-                // What was flipped before is no fault of the change.
-                let before = |f: &&PatchFace| sides.is_flipped(patch.before(live, f));
-                flipped == 0 || flipped <= patch.removed.iter().filter(before).count()
-            })
+    /// What a change that adds `cost` to the error `sum` is worth where the surface counts too: negative where it is for
+    /// the better. The deviation of what the patch removes is kept in `before` for other changes of the same faces.
+    pub(super) fn balance(
+        &self,
+        live: &LiveMesh,
+        patch: &Patch,
+        (cost, sum): (i64, f64),
+        before: &mut Option<f64>,
+    ) -> f64 {
+        let Some(deviation) = self.deviation else {
+            return cost as f64;
+        };
+        let before = *before.get_or_insert_with(|| deviation.before(live, patch));
+        deviation.balance(cost, sum, deviation.after(live, patch) - before)
+    }
+
+    /// Whether a change turns no face over that was not turned over before.
+    pub(super) fn keeps_sides(&self, live: &LiveMesh, patch: &Patch) -> bool {
+        self.sides.is_none_or(|sides| {
+            let faces = patch.added.iter();
+            let flipped = faces
+                .filter(|f| sides.is_flipped(patch.after(live, f)))
+                .count();
+            // What was flipped before is no fault of the change.
+            let before = |f: &&PatchFace| sides.is_flipped(patch.before(live, f));
+            flipped == 0 || flipped <= patch.removed.iter().filter(before).count()
+        })
     }
 }
 
@@ -271,26 +286,27 @@ impl<E: Unrender> Polisher<'_, E> {
         stale: bool,
         observer: &mut dyn Observer,
     ) -> bool {
-        let Some((to, _)) = found.better else {
+        let Some((to, cost)) = found.better else {
             return false;
         };
         self.own.star.gather(self.live, vertex);
         if self.own.prepare(self.live, to, self.limits.rules).is_none() {
             return false;
         }
-        let kept = self.keep(stale, observer);
+        let kept = self.keep((cost, stale), observer);
         self.counters.moves += u64::from(kept);
         kept
     }
 
-    /// Commits the patch of `own`; false where that turns out not to lower the error, and nothing has changed.
-    fn keep(&mut self, stale: bool, observer: &mut dyn Observer) -> bool {
+    /// Commits the patch of `own`, which was found to add `expected` to the error, perhaps to older pictures (`stale`);
+    /// false where that turns out to be neither for the better nor for as little, and nothing has changed.
+    fn keep(&mut self, (expected, stale): (i64, bool), observer: &mut dyn Observer) -> bool {
         let Search {
             patch, pictures, ..
         } = &mut self.own;
         let cost = self.pictures.commit(self.live, patch, pictures);
-        debug_assert!(stale || cost < 0, "a fresh cost is exact");
-        if cost >= 0 {
+        debug_assert!(stale || cost == expected, "a fresh cost is exact");
+        if cost >= 0 && cost > expected {
             self.pictures.commit(self.live, &patch.reversed(), pictures);
             self.counters.reverted += 1;
             return false;
@@ -328,19 +344,22 @@ impl<E: Unrender> Polisher<'_, E> {
                 let cost = pictures.cost(live, patch, &mut search.pictures);
                 let sum = pictures.error().sum() as f64;
                 let limits = polisher.limits;
-                Some(cost < 0 && limits.admit(live, patch, -cost as f64, sum))
+                let pays = cost < 0
+                    && limits.balance(live, patch, (cost, sum), &mut None) <= 0.0
+                    && limits.keeps_sides(live, patch);
+                Some((cost, pays))
             });
             let mut committed = false;
             for (&e, good) in batch.iter().zip(outcomes) {
                 self.tried[e as usize] = now;
                 self.counters.evaluations += u64::from(good.is_some());
-                if good != Some(true) {
+                let Some((cost, true)) = good else {
                     continue;
-                }
+                };
                 let mut patch = std::mem::take(&mut self.own.patch);
                 let legal = self.flip(e, &mut patch).is_some();
                 self.own.patch = patch;
-                if legal && self.keep(committed, observer) {
+                if legal && self.keep((cost, committed), observer) {
                     committed = true;
                     self.counters.flips += 1;
                 }
