@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Mesh;
+use super::{Mesh, MeshParts};
 
 /// Cells along a side of the grid.
 const GRID: usize = 128;
@@ -60,14 +60,37 @@ impl Mesh {
         }
         let renamed = |v: u32| renamed[v as usize];
         let faces = faces.into_iter().map(|t| t.map(renamed)).collect();
-        Self::from_triangles(positions, faces).unwrap_or_default()
+        let parts = MeshParts {
+            positions,
+            triangles: faces,
+            precision: self.precision(),
+            ..MeshParts::default()
+        };
+        Self::new(parts).unwrap_or_default()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::generate;
+    use crate::{mesh::generate, num::Precision};
+
+    #[test]
+    fn coordinates_that_no_single_precision_holds_are_rounded() {
+        let mesh = generate::cube();
+        for scale in [1e-44, 1e300] {
+            let mesh = Mesh::new(MeshParts {
+                positions: mesh.positions().iter().map(|&p| p * scale).collect(),
+                triangles: mesh.triangles().to_vec(),
+                precision: Precision::F64,
+                ..MeshParts::default()
+            })
+            .expect("finite");
+            let (low, high) = mesh.bounds().expect("not empty");
+            let part = mesh.near(&[[low, high]], 1);
+            assert_eq!(part.positions(), mesh.positions());
+        }
+    }
 
     #[test]
     fn a_face_that_touches_a_box_is_left_out_or_all_are_taken() {
