@@ -258,6 +258,9 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
     }
 }
 
+/// What orders collapses: images and what is charged, geometry, squared length, ends.
+type Key = (i64, f64, f64, [u32; 2]);
+
 #[test]
 fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
     for (mesh_name, mesh) in meshes() {
@@ -271,7 +274,7 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 let now = live.to_mesh().expect("valid").enter_frame(frame);
                 let before = error(&original, &now, &set);
                 // (1) Every legal collapse, judged by drawing the whole result.
-                let mut cheapest: Option<((i64, f64, f64, [u32; 2]), i64)> = None;
+                let mut cheapest: Option<(Key, i64)> = None;
                 for edge in (0..live.edge_ids()).filter(|&e| live.edge(e).is_some()) {
                     let mut ring = Ring::default();
                     ring.gather(&live, edge);
@@ -291,7 +294,7 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                     let ends = live.edge(edge).expect("in use");
                     let d = live.position(ends[1]) - live.position(ends[0]);
                     let charged = cost + (price * math::sqrt(proposal.geometric)) as i64;
-                    let key = (charged, proposal.geometric, d.dot(d), ends);
+                    let key: Key = (charged, proposal.geometric, d.dot(d), ends);
                     if cheapest.is_none_or(|(least, _)| key < least) {
                         cheapest = Some((key, cost));
                     }
