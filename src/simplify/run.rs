@@ -328,6 +328,7 @@ impl<'a> Run<'a> {
                 Limits {
                     rules: self.options.rules,
                     deviation: deviation.as_ref(),
+                    falling: self.options.error_rms.is_some(),
                     sides: sides.as_ref(),
                 },
                 &mut fresh,

@@ -144,6 +144,9 @@ impl<S> Search<S> {
                 found.evaluations += 1;
                 pictures.cost(live, &self.patch, &mut self.pictures)
             });
+            if limits.falling && cost > 0 {
+                continue;
+            }
             let balance = limits.balance(live, &self.patch, (cost, sum), &mut before);
             if (balance, cost) < best && limits.keeps_sides(live, &self.patch) {
                 best = (balance, cost);

@@ -49,6 +49,8 @@ pub struct Limits<'a> {
     pub rules: Rules,
     /// How near the original a change should stay, and what being nearer is worth.
     pub deviation: Option<&'a Deviation<'a>>,
+    /// The error of the pictures may not rise for the surface either: it is limited.
+    pub falling: bool,
     /// The sides of the original, which no face may turn its back on.
     pub sides: Option<&'a Sides>,
 }
