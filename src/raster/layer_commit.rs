@@ -1,7 +1,7 @@
 //! How the picture of one view, and its layers, take on a change.
 
 use super::{
-    Face, Projector, Region, ScreenVertex,
+    Face, Projector, ScreenVertex,
     layer_view::{Around, LayerView},
     look::Look,
     small::{Fit, Small, SmallCorner},
@@ -55,7 +55,9 @@ impl LayerView {
         }
         // (3) What is derived from them.
         if look.count > 0 {
-            self.measure_tiles(look.region);
+            let image = self.projector.image();
+            self.deepest
+                .measure(look.region, image, self.stacks.shown());
         }
     }
 
@@ -68,28 +70,6 @@ impl LayerView {
             *sum = *sum - u16::from(old) + u16::from(tone);
         }
         self.stacks.set_luma(sample, tone);
-    }
-
-    /// Finds the greatest visible depth of every tile that meets the region.
-    pub(super) fn measure_tiles(&mut self, region: Region) {
-        let height = self.projector.image().height();
-        let tile = |v: i32| (v >> TILE) as usize;
-        for row in tile(region.y0)..=tile(region.y1 - 1) {
-            for column in tile(region.x0)..=tile(region.x1 - 1) {
-                let (x0, y0) = (column << TILE, row << TILE);
-                let (x1, y1) = (
-                    (x0 + (1 << TILE)).min(self.width),
-                    (y0 + (1 << TILE)).min(height),
-                );
-                let mut deepest = 0;
-                for y in y0..y1 {
-                    let shown = &self.stacks.shown()[y * self.width + x0..y * self.width + x1];
-                    deepest = shown.iter().fold(deepest, |d: u64, s| d.max(s.least_key()));
-                }
-                // The greatest key with this upper half of the depth.
-                self.deepest[row * self.tile_columns + column] = deepest | 0xffff_ffff_ffff;
-            }
-        }
     }
 }
 

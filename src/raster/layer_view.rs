@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{
     Change, Face, FaceGeometry, Model, Paint, Projector, Region, ScreenVertex, Shader,
+    deepest::Deepest,
     lanes::{Boxes, Lanes},
     prepare::{After, Corner, Fate, Prepared},
     stacks::{Stacks, TILE},
@@ -51,8 +52,7 @@ pub(super) struct LayerView {
     pub(super) stacks: Stacks,
     /// Where pixels have several samples, their sums: of the reference and now.
     pub(super) sums: Vec<[u16; 2]>,
-    /// By tile: no sample shows a key that is greater.
-    pub(super) deepest: Vec<u64>,
+    pub(super) deepest: Deepest,
     pub(super) width: usize,
     pub(super) tile_columns: usize,
     /// Logarithm of the samples in a row of a pixel.
@@ -88,7 +88,7 @@ impl LayerView {
             background: set.background,
             stacks: Stacks::new(width * height, set.background, &single, tiles, nothing),
             sums: Vec::new(),
-            deepest: vec![u64::MAX; tiles],
+            deepest: Deepest::new(image),
             width,
             tile_columns,
             samples: set.samples.trailing_zeros(),
@@ -109,7 +109,9 @@ impl LayerView {
                 pictures.sums[pixel][1] += u16::from(pictures.stacks.shown()[at].luma());
             }
         }
-        pictures.measure_tiles(image);
+        pictures
+            .deepest
+            .measure(image, image, pictures.stacks.shown());
         pictures
     }
 

@@ -11,7 +11,6 @@ use super::{
     layer_view::{Around, LayerView},
     prepare::After,
     small::{Covered, Fit, Small},
-    stacks::TILE,
     unrender::difference,
 };
 
@@ -29,6 +28,8 @@ pub(super) struct Look {
     /// The pixels that may change, and the logarithm of the stride of the buffers below.
     pub(super) region: Region,
     pub(super) shift: u32,
+    /// The buffers below hold the region; not where nothing came near enough to be seen.
+    entered: bool,
     /// What a key must be below to be seen at a pixel of the region. Pixels that still show what they did, or what
     /// was behind: a lower bound of that; others: the nearest fresh key. After the look the keys of touched pixels.
     pub(super) slots: Vec<u64>,
@@ -76,14 +77,16 @@ impl LayerView {
                 self.shader.intensity(position, n)
             }));
         }
+        look.entered = false;
         if !hidden {
-            look.begin(self.region(around));
-            self.uncover(around, uncovers, look);
+            if uncovers {
+                self.enter(around, look);
+            }
             self.draw_fresh(around, look);
             self.tone(around, look);
         }
         if restyles {
-            self.restyle(around, look, hidden);
+            self.restyle(around, look);
         }
         self.sum(look)
     }
@@ -122,28 +125,22 @@ impl LayerView {
                 .any(|f| around.seen[f.id as usize] >> around.lane & 1 != 0)
     }
 
-    /// True where the fresh triangles are behind everything that is seen in the tiles of their box.
+    /// True where the fresh triangles are behind everything that is seen around their box.
     #[inline]
     fn is_hidden(&self, around: &Around<'_>) -> bool {
         let Some(pixels) = around.fresh.pixels(around.lane, self.projector.bits()) else {
             return false;
         };
         let pixels = pixels.intersection(self.projector.image());
-        if pixels.is_empty() {
-            return true;
-        }
-        let nearest = u64::from(around.fresh.nearest(around.lane)) << 32;
-        let tile = |v: i32| (v >> TILE) as usize;
-        (tile(pixels.y0)..=tile(pixels.y1 - 1)).all(|row| {
-            let row = &self.deepest[row * self.tile_columns..][..self.tile_columns];
-            let row = &row[tile(pixels.x0)..=tile(pixels.x1 - 1)];
-            row.iter().all(|&deepest| nearest > deepest)
-        })
+        self.deepest
+            .hides(pixels, around.fresh.nearest(around.lane))
     }
 
-    /// Finds the pixels that show a triangle that goes, and fills the slots with lower bounds.
-    #[inline]
-    fn uncover(&self, around: &Around<'_>, uncovers: bool, look: &mut Look) {
+    /// Fills the slots of the region with lower bounds, and finds the pixels that show a triangle that goes.
+    fn enter(&self, around: &Around<'_>, look: &mut Look) {
+        look.begin(self.region(around));
+        look.entered = true;
+        let uncovers = around.uncovers >> around.lane & 1 != 0;
         let region = look.region;
         let width = region.width();
         let fates = around.prepared.fates();
@@ -152,6 +149,7 @@ impl LayerView {
             let from = y as usize * self.width + region.x0 as usize;
             let start = row << look.shift;
             let slots = &mut look.slots[start..start + width];
+            look.who[start..start + width].fill(0);
             let shown = &self.stacks.shown()[from..from + width];
             if !uncovers {
                 for (slot, shown) in slots.iter_mut().zip(shown) {
@@ -198,6 +196,7 @@ impl LayerView {
     /// Lets the fresh triangles compete for the pixels they cover.
     fn draw_fresh(&self, around: &Around<'_>, look: &mut Look) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
+        let uncovers = around.uncovers >> around.lane & 1 != 0;
         for face in &around.prepared.fresh {
             let corners = face.corners.map(|c| match c.moved() {
                 Some(entry) => around.moved.corner(entry, around.lane),
@@ -207,6 +206,12 @@ impl LayerView {
                 match Small::fit([a, b, c], bits, self.view.cull, image) {
                     Fit::Nothing => continue,
                     Fit::Small(small) => {
+                        if !uncovers && self.deepest.hides(small.bounds, small.nearest()) {
+                            continue;
+                        }
+                        if !look.entered {
+                            self.enter(around, look);
+                        }
                         if self.draw_small(around, &small, face.id, look) {
                             let piece = self.piece(around, face, look);
                             look.pieces.push(piece);
@@ -215,6 +220,9 @@ impl LayerView {
                     }
                     Fit::Large => {}
                 }
+            }
+            if !look.entered {
+                self.enter(around, look);
             }
             let whole = self.face_after(around, face, &look.intensities);
             whole.pieces(&self.projector, self.view.cull, |setup, paint| {
@@ -318,7 +326,7 @@ impl LayerView {
     }
 
     /// The luma of pixels that keep their triangle, which looks different.
-    fn restyle(&self, around: &Around<'_>, look: &mut Look, hidden: bool) {
+    fn restyle(&self, around: &Around<'_>, look: &mut Look) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
         for after in &around.prepared.restyled {
             if around.seen[after.id as usize] >> around.lane & 1 == 0 {
@@ -345,7 +353,7 @@ impl LayerView {
                 }
                 for i in 0..count {
                     let x = look.columns[i];
-                    if !hidden && look.is_touched(x, y) {
+                    if look.entered && look.is_touched(x, y) {
                         continue;
                     }
                     let luma = match &whole {
@@ -413,9 +421,8 @@ impl Look {
         if self.slots.len() < size + 1 {
             self.slots.resize(size + 1, 0);
             self.touched.resize(size + 1, 0);
+            self.who.resize(size + 1, 0);
         }
-        self.who.clear();
-        self.who.resize(size, 0);
     }
 
     /// Makes indices those of a region.

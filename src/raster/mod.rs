@@ -12,6 +12,7 @@
 mod buckets;
 mod clip;
 mod coverage;
+mod deepest;
 mod draw;
 mod face;
 mod lanes;

@@ -123,6 +123,12 @@ impl Small {
         Fit::Small(small)
     }
 
+    /// The least depth of its corners.
+    #[inline]
+    pub(super) fn nearest(&self) -> u32 {
+        self.depth_min
+    }
+
     /// Lists the covered pixels; `index` of pixel (x, y) is `(y - origin.1 << shift) + x - origin.0`.
     #[inline]
     pub(super) fn list(&self, origin: (i32, i32), shift: u32, covered: &mut Covered) -> usize {

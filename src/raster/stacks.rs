@@ -36,6 +36,12 @@ impl Shown {
         self.0 & 0xffff_0000_0000_0000
     }
 
+    /// The upper half of the depth.
+    #[inline]
+    pub(super) fn upper_depth(self) -> u16 {
+        (self.0 >> 48) as u16
+    }
+
     fn set_key(&mut self, key: u64) {
         self.0 = self.0 & 0x0000_ffff_0000_0000
             | key & 0xffff_0000_0000_0000
