@@ -11,7 +11,7 @@ pub struct Counters {
     pub collapses: u64,
     /// Edges evaluated, those of rank measurements not counted.
     pub evaluations: u64,
-    /// Costs of edges that were estimated from sums.
+    /// Costs of edges that were estimated: from sums, or by a glance at some of the views.
     #[serde(skip_serializing_if = "is_zero")]
     pub estimates: u64,
     /// Edges an eager queue would have evaluated for the same collapses.

@@ -12,7 +12,7 @@ use super::{
     Changes, Counters, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule,
     Site,
     legality::RING_LIMIT,
-    queue::{self, Front, Queue},
+    queue::{self, Evaluation, Front, Queue},
 };
 use crate::{Error, Progress, Result};
 
@@ -192,6 +192,9 @@ impl<M: Method> Engine<M> {
                             self.counters.estimates += 1;
                             queue.defer(&self.live, id, geometric);
                         }
+                        None if !queue.is_estimated(id) && self.method.glances() => {
+                            self.refresh(&mut queue, &[id], Evaluation::Glance);
+                        }
                         None => self.look_ahead(&mut queue, id),
                     }
                 }
@@ -206,9 +209,9 @@ impl<M: Method> Engine<M> {
                     let position = proposal.position.position();
                     self.ring.patch(&self.live, position, &mut self.patch);
                     if !self.method.confirm(&self.live, &self.patch, &proposal) {
-                        self.refresh(&mut queue, &[id]);
+                        self.refresh(&mut queue, &[id], Evaluation::Whole);
                         if queue.known(id) == Some(proposal) {
-                            self.note(&mut queue, id, Err(Refusal::Method));
+                            self.note(&mut queue, id, Err(Refusal::Method), Evaluation::Whole);
                         }
                         continue;
                     }
@@ -286,7 +289,7 @@ impl<M: Method> Engine<M> {
         });
         if !touched.is_empty() {
             touched.sort_unstable();
-            self.refresh(queue, &touched);
+            self.refresh(queue, &touched, self.first_evaluation());
         }
         self.touched = touched;
     }
@@ -294,47 +297,53 @@ impl<M: Method> Engine<M> {
     /// Evaluates the edge at the front, and with it those behind it that wait under an estimate as well.
     fn look_ahead(&mut self, queue: &mut Queue, id: u32) {
         match self.method.looks_ahead() {
-            0 | 1 => self.refresh(queue, &[id]),
+            0 | 1 => self.refresh(queue, &[id], Evaluation::Whole),
             count => {
                 let ids = queue.estimated_in_front(count);
-                self.refresh(queue, &ids);
+                self.refresh(queue, &ids, Evaluation::Whole);
             }
         }
     }
 
-    /// Evaluates edges again and re-keys them.
-    fn refresh(&mut self, queue: &mut Queue, ids: &[u32]) {
-        self.counters.evaluations += ids.len() as u64;
+    /// Evaluates edges again, or glances at them, and re-keys them.
+    fn refresh(&mut self, queue: &mut Queue, ids: &[u32], how: Evaluation) {
+        self.count(ids.len(), how);
         if ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1 {
-            let mut outcomes: Vec<_> = self.evaluate_shared(ids);
+            let mut outcomes: Vec<_> = self.evaluate_shared(ids, how);
             outcomes.sort_unstable_by_key(|(i, _)| *i);
             for (i, outcome) in outcomes {
-                self.note(queue, ids[i], outcome);
+                self.note(queue, ids[i], outcome, how);
             }
         } else if ids.len() <= self.method.evaluations_per_task() {
             for &id in ids {
-                let outcome = evaluate(
-                    &self.live,
-                    &self.method,
-                    self.rules,
-                    id,
-                    &mut self.ring,
-                    &mut self.scratch,
-                );
+                let by = (&self.method, how);
+                let buffers = (&mut self.ring, &mut self.scratch);
+                let outcome = evaluate(&self.live, by, self.rules, id, buffers);
                 self.gathered = Some(id);
-                self.note(queue, id, outcome);
+                self.note(queue, id, outcome, how);
             }
         } else {
-            let outcomes = self.evaluate_all(ids, self.method.evaluations_per_task());
+            let outcomes = self.evaluate_all(ids, how, self.method.evaluations_per_task());
             for (&id, outcome) in ids.iter().zip(outcomes) {
-                self.note(queue, id, outcome);
+                self.note(queue, id, outcome, how);
             }
+        }
+    }
+
+    fn count(&mut self, edges: usize, how: Evaluation) {
+        match how {
+            Evaluation::Whole => self.counters.evaluations += edges as u64,
+            Evaluation::Glance => self.counters.estimates += edges as u64,
         }
     }
 
     /// Evaluates a small batch on all threads: each takes the next edge when it is done with one. The outcomes, with
     /// the index of their edge, are in no order.
-    fn evaluate_shared(&mut self, ids: &[u32]) -> Vec<(usize, Result<Proposal, Refusal>)> {
+    fn evaluate_shared(
+        &mut self,
+        ids: &[u32],
+        how: Evaluation,
+    ) -> Vec<(usize, Result<Proposal, Refusal>)> {
         let (live, method, rules) = (&self.live, &self.method, self.rules);
         let threads = rayon::current_num_threads().min(ids.len());
         while self.pool.len() < threads {
@@ -348,18 +357,24 @@ impl<M: Method> Engine<M> {
                 let Some(&id) = ids.get(i) else {
                     return outcomes;
                 };
-                outcomes.push((i, evaluate(live, method, rules, id, ring, scratch)));
+                outcomes.push((i, evaluate(live, (method, how), rules, id, (ring, scratch))));
             }
         });
         let outcomes: Vec<Vec<_>> = outcomes.collect();
         outcomes.into_iter().flatten().collect()
     }
 
-    fn note(&mut self, queue: &mut Queue, id: u32, outcome: Result<Proposal, Refusal>) {
+    fn note(
+        &mut self,
+        queue: &mut Queue,
+        id: u32,
+        outcome: Result<Proposal, Refusal>,
+        how: Evaluation,
+    ) {
         if let Err(refusal) = outcome {
             self.counters.refusals.add(refusal);
         }
-        queue.evaluated(&self.live, id, outcome.ok());
+        queue.evaluated(&self.live, id, outcome.ok(), how);
     }
 
     /// Evaluates every edge, block by block, so that the user hears of it and can stop it.
@@ -368,19 +383,20 @@ impl<M: Method> Engine<M> {
         let per_task = CHUNK.min(self.method.evaluations_per_task());
         self.counters.evaluations_if_eager += ids.len() as u64;
         let estimated = self.estimate_all(&mut ids);
-        self.counters.evaluations += ids.len() as u64;
+        let how = self.first_evaluation();
+        self.count(ids.len(), how);
         let mut evaluated = Vec::with_capacity(ids.len());
         for (i, block) in ids.chunks(per_task * TASKS).enumerate() {
             let done = i * per_task * TASKS;
             progress.step("evaluate", done as u64, ids.len() as u64)?;
-            for (&id, outcome) in block.iter().zip(self.evaluate_all(block, per_task)) {
+            for (&id, outcome) in block.iter().zip(self.evaluate_all(block, how, per_task)) {
                 match outcome {
                     Ok(proposal) => evaluated.push((id, proposal)),
                     Err(refusal) => self.counters.refusals.add(refusal),
                 }
             }
         }
-        Ok(Queue::new(&self.live, evaluated, estimated))
+        Ok(Queue::new(&self.live, evaluated, how, estimated))
     }
 
     /// Estimates edges in parallel; those without an estimate stay in `ids`.
@@ -399,6 +415,15 @@ impl<M: Method> Engine<M> {
         estimated
     }
 
+    /// How edges are evaluated before they come to the front of the queue.
+    fn first_evaluation(&self) -> Evaluation {
+        if self.method.glances() {
+            Evaluation::Glance
+        } else {
+            Evaluation::Whole
+        }
+    }
+
     fn live_edges(&self) -> Vec<u32> {
         (0..self.live.edge_ids())
             .filter(|&e| self.live.edge(e).is_some() && !self.live.is_frozen(e))
@@ -406,7 +431,12 @@ impl<M: Method> Engine<M> {
     }
 
     /// Evaluates edges in parallel; the outcomes are in the order of `ids`.
-    fn evaluate_all(&self, ids: &[u32], per_task: usize) -> Vec<Result<Proposal, Refusal>>
+    fn evaluate_all(
+        &self,
+        ids: &[u32],
+        how: Evaluation,
+        per_task: usize,
+    ) -> Vec<Result<Proposal, Refusal>>
     where
         M: Sync,
     {
@@ -417,7 +447,7 @@ impl<M: Method> Engine<M> {
                 || (Ring::default(), method.scratch()),
                 |(ring, scratch), chunk| {
                     let each = chunk.iter();
-                    each.map(|&id| evaluate(live, method, rules, id, ring, scratch))
+                    each.map(|&id| evaluate(live, (method, how), rules, id, (ring, scratch)))
                         .collect()
                 },
             )
@@ -427,7 +457,7 @@ impl<M: Method> Engine<M> {
 
     fn blocked(&self) -> Refusals {
         let mut blocked = Refusals::default();
-        for outcome in self.evaluate_all(&self.live_edges(), CHUNK) {
+        for outcome in self.evaluate_all(&self.live_edges(), Evaluation::Whole, CHUNK) {
             if let Err(refusal) = outcome {
                 blocked.add(refusal);
             }
@@ -440,7 +470,11 @@ impl<M: Method> Engine<M> {
             return;
         }
         let ids = self.live_edges();
-        let outcomes = self.evaluate_all(&ids, CHUNK.min(self.method.evaluations_per_task()));
+        let outcomes = self.evaluate_all(
+            &ids,
+            Evaluation::Whole,
+            CHUNK.min(self.method.evaluations_per_task()),
+        );
         let keys: Vec<_> = ids
             .iter()
             .zip(outcomes)
@@ -461,11 +495,10 @@ fn crowded(live: &LiveMesh, id: u32) -> bool {
 
 fn evaluate<M: Method>(
     live: &LiveMesh,
-    method: &M,
+    (method, how): (&M, Evaluation),
     rules: Rules,
     id: u32,
-    ring: &mut Ring,
-    scratch: &mut M::Scratch,
+    (ring, scratch): (&mut Ring, &mut M::Scratch),
 ) -> Result<Proposal, Refusal> {
     if crowded(live, id) {
         return Err(Refusal::Valence);
@@ -474,5 +507,8 @@ fn evaluate<M: Method>(
         return Err(Refusal::Unplaced);
     }
     let site = Site::new(live, ring, rules)?;
-    method.propose(&site, scratch)
+    match how {
+        Evaluation::Whole => method.propose(&site, scratch),
+        Evaluation::Glance => method.glance(&site, scratch),
+    }
 }

@@ -116,6 +116,22 @@ pub trait Method: Sync {
         None
     }
 
+    /// Whether [`Method::glance`] is to be asked before [`Method::propose`].
+    fn glances(&self) -> bool {
+        false
+    }
+
+    /// A proposal whose keys are only about right, for a fraction of the time.
+    ///
+    /// Where the method glances, an edge waits in the queue under such keys, and is proposed only when they come to the
+    /// front.
+    ///
+    /// # Errors
+    /// As [`Method::propose`].
+    fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
+        self.propose(site, scratch)
+    }
+
     /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
     /// rose is noticed in time at the front of the queue.
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {

@@ -17,6 +17,15 @@ pub enum Schedule {
     Eager,
 }
 
+/// How an edge is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Evaluation {
+    /// To the last bit: it may be collapsed.
+    Whole,
+    /// So that it has a place in the queue, where it waits to be evaluated as a whole.
+    Glance,
+}
+
 /// What is looked at for every edge around every collapse; kept apart from the proposals to be small.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mark {
@@ -53,9 +62,11 @@ impl Queue {
     pub(super) fn new(
         live: &LiveMesh,
         evaluated: Vec<(u32, Proposal)>,
+        how: Evaluation,
         estimated: Vec<(u32, f64)>,
     ) -> Self {
         let ids = live.edge_ids() as usize;
+        let glanced = how == Evaluation::Glance;
         let mut queue = Self {
             marks: vec![Mark::default(); ids],
             proposals: vec![None; ids],
@@ -65,7 +76,12 @@ impl Queue {
         for (id, proposal) in evaluated {
             if let Some(key) = key(live, id, &proposal) {
                 queue.proposals[id as usize] = Some(proposal);
-                queue.marks[id as usize].queued = true;
+                queue.marks[id as usize] = Mark {
+                    round: 0,
+                    dirty: glanced,
+                    queued: true,
+                    estimated: glanced,
+                };
                 entries.push((key, id));
             }
         }
@@ -93,12 +109,18 @@ impl Queue {
         })
     }
 
-    /// Records the outcome of an evaluation.
-    pub(super) fn evaluated(&mut self, live: &LiveMesh, id: u32, proposal: Option<Proposal>) {
+    /// Records the outcome of an evaluation, or only of a glance: the edge then waits to be evaluated.
+    pub(super) fn evaluated(
+        &mut self,
+        live: &LiveMesh,
+        id: u32,
+        proposal: Option<Proposal>,
+        how: Evaluation,
+    ) {
         self.grow(id);
         let mark = &mut self.marks[id as usize];
-        mark.dirty = false;
-        mark.estimated = false;
+        mark.dirty = how == Evaluation::Glance;
+        mark.estimated = mark.dirty;
         match proposal.and_then(|p| Some((p, key(live, id, &p)?))) {
             Some((proposal, key)) => {
                 mark.queued = true;

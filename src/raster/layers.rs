@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 use super::{
-    Change, Model, Plane, Unrender,
+    Change, Glance, Model, Plane, Unrender,
     lanes::{Boxes, Lanes},
     layer_view::{Around, LayerView},
     look::Look,
@@ -108,13 +108,22 @@ impl Part {
         part
     }
 
-    fn begin(&self, change: &Change<'_>, prepared: &Prepared, scratch: &mut PartScratch) -> u64 {
+    /// Puts the vertices that move on the screens of the views in `lanes` (a bit for each), and finds the boxes there.
+    fn begin(
+        &self,
+        change: &Change<'_>,
+        prepared: &Prepared,
+        lanes: u64,
+        scratch: &mut PartScratch,
+    ) -> u64 {
         let PartScratch {
             moved, fresh, all, ..
         } = scratch;
         moved.resize(change.moved.len());
         for (entry, m) in change.moved.iter().enumerate() {
-            moved.project(entry, m.1, self.views.iter().map(|view| &view.projector));
+            for lane in each(lanes) {
+                moved.set(entry, lane, self.views[lane].projector.screen(m.1));
+            }
         }
         fresh.clear(self.views.len());
         for &v in &prepared.rim {
@@ -136,11 +145,15 @@ impl Part {
         model: &Model,
         change: &Change<'_>,
         prepared: &Prepared,
+        lanes: u64,
         scratch: &mut PartScratch,
     ) -> i64 {
-        let uncovers = self.begin(change, prepared, scratch);
+        if lanes == 0 {
+            return 0;
+        }
+        let uncovers = self.begin(change, prepared, lanes, scratch);
         let mut sum = 0;
-        for (lane, view) in self.views.iter().enumerate() {
+        for lane in each(lanes) {
             let around = Around {
                 model,
                 change,
@@ -155,7 +168,7 @@ impl Part {
                 lane,
                 lane_count: self.views.len(),
             };
-            sum += view.look(&around, &mut scratch.look);
+            sum += self.views[lane].look(&around, &mut scratch.look);
         }
         sum
     }
@@ -167,7 +180,7 @@ impl Part {
         prepared: &Prepared,
         scratch: &mut PartScratch,
     ) -> i64 {
-        let uncovers = self.begin(change, prepared, scratch);
+        let uncovers = self.begin(change, prepared, all(self.views.len()), scratch);
         let lane_count = self.views.len();
         let mut sum = 0;
         for (lane, view) in self.views.iter_mut().enumerate() {
@@ -212,6 +225,23 @@ impl Part {
         }
         sum
     }
+}
+
+/// Bits of so many lanes, at most 64.
+fn all(lanes: usize) -> u64 {
+    match lanes {
+        0 => 0,
+        n => u64::MAX >> (64 - n),
+    }
+}
+
+/// The lanes whose bits are set.
+fn each(mut lanes: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = (lanes != 0).then(|| lanes.trailing_zeros() as usize)?;
+        lanes &= lanes - 1;
+        Some(lane)
+    })
 }
 
 impl LayerEngine {
@@ -288,19 +318,22 @@ impl Unrender for LayerEngine {
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
+    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut LayerScratch) -> i64 {
         scratch.prepared.fill(&self.model, change, self.flat);
         let (model, prepared) = (&self.model, &scratch.prepared);
-        let work = |(part, scratch): (&Part, &mut PartScratch)| {
+        let work = |(i, (part, scratch)): (usize, (&Part, &mut PartScratch))| {
             scratch.look.pixels_seen = 0;
-            part.evaluate(model, change, prepared, scratch)
+            let lanes = each(all(part.views.len()));
+            let lanes = lanes.filter(|lane| glance.sees(i * self.per_part + lane));
+            let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
+            part.evaluate(model, change, prepared, lanes, scratch)
         };
         let sum = if scratch.lone && scratch.pixels > WORTH_SHARING {
             let pairs = self.parts.par_iter().zip(&mut scratch.parts);
-            pairs.map(work).sum()
+            pairs.enumerate().map(work).sum()
         } else {
             let pairs = self.parts.iter().zip(&mut scratch.parts);
-            pairs.map(work).sum()
+            pairs.enumerate().map(work).sum()
         };
         scratch.pixels = scratch.parts.iter().map(|part| part.look.pixels_seen).sum();
         sum

@@ -48,5 +48,5 @@ pub use samples::{luma_sums, mean_luma, mean_rgb, sum_samples};
 pub use scene::Scene;
 pub use setup::Setup;
 pub use shade::{FaceGeometry, Shader};
-pub use unrender::{Added, Change, Model, Unrender};
+pub use unrender::{Added, Change, Glance, Model, Unrender};
 pub use zbuffer::ZBuffer;

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    Change, FaceGeometry, Model, Plane, Unrender,
+    Change, FaceGeometry, Glance, Model, Plane, Unrender,
     pictures::{PartScratch, ViewPictures},
 };
 use crate::view::ViewSet;
@@ -75,10 +75,12 @@ impl Unrender for BucketEngine {
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut BucketScratch) -> i64 {
+    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut BucketScratch) -> i64 {
         self.begin(change, scratch);
         let geometry = &scratch.geometry;
-        let views: Vec<&ViewPictures> = self.views.iter().collect();
+        let views = self.views.iter().enumerate();
+        let views = views.filter(|&(i, _)| glance.sees(i));
+        let views: Vec<&ViewPictures> = views.map(|(_, view)| view).collect();
         in_parts(views, &mut scratch.parts, &|view: &ViewPictures, part| {
             let region = view.redraw(&self.model, change, geometry, part);
             view.difference(region, part)

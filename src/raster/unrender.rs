@@ -32,6 +32,31 @@ pub struct Change<'a> {
     pub normals: &'a [(u32, DVec3)],
 }
 
+/// Which views an evaluation looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Glance {
+    /// All of them.
+    #[default]
+    Whole,
+    /// Every so-manieth, from the first: a glance. Steps below 2 are the whole.
+    Part(u32),
+    /// Those that such a part leaves out.
+    Rest(u32),
+}
+
+impl Glance {
+    /// Whether it looks at the view with this index in its set.
+    #[inline]
+    #[must_use]
+    pub fn sees(self, view: usize) -> bool {
+        match self {
+            Self::Whole => true,
+            Self::Part(step) => step < 2 || view.is_multiple_of(step as usize),
+            Self::Rest(step) => step >= 2 && !view.is_multiple_of(step as usize),
+        }
+    }
+}
+
 /// Pictures of one mesh in all views of a set, kept up to date, and how far they are from reference pictures.
 ///
 /// Differences are sums over pixels of `(y0 - y)^2`, where `y0` and `y` are the sums of the luma of the pixel's
@@ -53,8 +78,8 @@ pub trait Unrender: Sync + Sized {
         self.scratch()
     }
 
-    /// What the change would add to the sum of squared differences, without making it.
-    fn evaluate(&self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;
+    /// What the change would add to the sum of squared differences of the views of a glance, without making it.
+    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut Self::Scratch) -> i64;
 
     /// Makes the change and gives what it added to the sum of squared differences.
     fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;

@@ -285,7 +285,7 @@ impl<'a> Run<'a> {
         let deviation = |live: &LiveMesh, weight| Deviation::new(surface?, live, weight);
         let sum = method.error().sum() as f64;
         let price = deviation(&self.live, own.swept_weight).map_or(0.0, |d| d.price(sum));
-        let method = method.with_swept_price(price);
+        let method = method.with_swept_price(price).with_glance(own.glance);
         let before = (self.live.triangle_count(), Counters::default());
         let (end, method) = self.phase("image", method, target, before)?;
         let mut pictures = method.into_pictures();

@@ -39,6 +39,56 @@ impl Method for Dice {
     }
 }
 
+/// Prices as [`Dice`] does, and glances with an error from a range.
+struct Glancing {
+    dice: Dice,
+    off: std::ops::Range<i64>,
+    /// Collapses whose price was not the dice's.
+    rough: usize,
+}
+
+impl Glancing {
+    fn price(&self, [u, w]: [u32; 2]) -> [i64; 2] {
+        let mut random = Random(self.dice.0 ^ u64::from(u) << 32 ^ u64::from(w));
+        random.unit();
+        let image = (random.next() % 7) as i64 - 3;
+        let length = self.off.end - self.off.start;
+        [image, self.off.start + (random.next() % length as u64) as i64]
+    }
+}
+
+impl Method for Glancing {
+    type Scratch = ();
+
+    fn scratch(&self) {}
+
+    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+        let image = self.price(site.ring.ends)[0];
+        let proposal = self.dice.propose(site, &mut ())?;
+        Ok(Proposal { image, ..proposal })
+    }
+
+    fn glances(&self) -> bool {
+        true
+    }
+
+    fn glance(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+        let [image, off] = self.price(site.ring.ends);
+        let proposal = self.dice.propose(site, &mut ())?;
+        Ok(Proposal {
+            image: image + off,
+            ..proposal
+        })
+    }
+
+    fn within_limit(&mut self, _: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {
+        let kept = patch.moved.expect("a collapse moves a vertex").vertex;
+        let gone = patch.gone.expect("a collapse removes a vertex");
+        self.rough += usize::from(proposal.image != self.price([kept, gone])[0]);
+        true
+    }
+}
+
 type EdgeCounts = BTreeMap<[u32; 2], u32>;
 
 fn live_triangles(live: &LiveMesh) -> Vec<(u32, [u32; 3])> {
@@ -346,6 +396,42 @@ fn an_eager_queue_takes_the_cheapest_edge_every_time() {
         engine.counters().evaluations,
         engine.counters().evaluations_if_eager
     );
+}
+
+#[test]
+fn no_edge_is_collapsed_at_the_price_of_a_glance_and_cheap_glances_change_no_order() {
+    let mesh = shapes::torus(16, 10, 3);
+    for seed in 0..20 {
+        let run = |off: std::ops::Range<i64>, schedule| {
+            let live = LiveMesh::new(&mesh, frame_of(&mesh));
+            let method = Glancing {
+                dice: Dice(seed),
+                off,
+                rough: 0,
+            };
+            let mut engine =
+                Engine::new(live, method, Rules::default(), schedule).with_rank_measured(1);
+            engine
+                .run(Target { triangles: 60 }, &mut (), &Silent)
+                .expect("nobody interrupts");
+            let (live, method, counters) = engine.into_parts();
+            assert_eq!(method.rough, 0, "{schedule:?}");
+            (live.to_mesh(), counters)
+        };
+        let (exact, _) = run(0..1, Schedule::Eager);
+        let (cheap, counters) = run(-4..1, Schedule::Eager);
+        assert_eq!(cheap, exact);
+        assert!(
+            counters.ranks.iter().all(|&rank| rank == 0.0),
+            "a glance below the price is no reason to overlook an edge"
+        );
+        assert_eq!(counters.estimates, counters.evaluations_if_eager);
+        assert!(counters.evaluations < counters.estimates / 2);
+        // Any glance will do for the rest, and any schedule.
+        for schedule in [Schedule::Lazy, Schedule::Semi, Schedule::Eager] {
+            run(-4..5, schedule).0.expect("valid");
+        }
+    }
 }
 
 #[test]

@@ -3,7 +3,9 @@
 use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
-    raster::{self, Added, BucketEngine, Change, LayerEngine, Model, Plane, Scene, Unrender},
+    raster::{
+        self, Added, BucketEngine, Change, Glance, LayerEngine, Model, Plane, Scene, Unrender,
+    },
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
 use proptest::prelude::*;
@@ -276,8 +278,8 @@ proptest! {
                 Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
             let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
             let costs = [
-                buckets.evaluate(&change, &mut scratches.0),
-                layers.evaluate(&change, &mut scratches.1),
+                buckets.evaluate(&change, Glance::Whole, &mut scratches.0),
+                layers.evaluate(&change, Glance::Whole, &mut scratches.1),
             ];
             let committed = buckets.commit(&change, &mut scratches.0);
             prop_assert_eq!(layers.commit(&change, &mut scratches.1), committed);
@@ -296,6 +298,49 @@ proptest! {
             }
             prop_assert_eq!(error, scratch_error);
             now = after;
+        }
+    }
+
+    #[test]
+    fn a_glance_costs_what_the_views_that_it_sees_cost(
+        start in patient(),
+        own in views(),
+        more in proptest::collection::vec(view(), 12),
+        step in step(),
+        every in 0..6_u32,
+    ) {
+        // So many views that the layers engine divides them among threads.
+        let set = ViewSet { views: more, ..own };
+        let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        let Some(after) = operate(&start, &step) else { return Ok(()) };
+        let d = difference(&start, &after, gouraud);
+        let change = Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
+        let [before, sums] = [&start, &after].map(|patient| {
+            let sums = set.views.iter().map(|v| raster::luma_sums(&patient.scene(), v, &set));
+            sums.collect::<Vec<Plane<u16>>>()
+        });
+        // The reference is the picture before: what a change costs is how far it leads away.
+        let costs: Vec<i64> = before.iter().zip(&sums).map(|(y0, y)| {
+            let pairs = y0.values().iter().zip(y.values());
+            pairs.map(|(&y0, &y)| (i64::from(y0) - i64::from(y)).pow(2)).sum()
+        }).collect();
+        let seen = |i: usize| every < 2 || i % every as usize == 0;
+        let sum = |wanted: bool| -> i64 {
+            let views = costs.iter().enumerate().filter(|(i, _)| seen(*i) == wanted);
+            views.map(|(_, cost)| cost).sum()
+        };
+        let model = || Model::new(&start.scene(), &set);
+        let buckets = BucketEngine::new(model(), &set, before.clone());
+        let layers = LayerEngine::new(model(), &set, before.clone());
+        let mut scratches = (buckets.scratch(), layers.scratch(), layers.lone_scratch());
+        for (glance, expected) in [
+            (Glance::Part(every), sum(true)),
+            (Glance::Rest(every), sum(false)),
+            (Glance::Whole, costs.iter().sum()),
+        ] {
+            prop_assert_eq!(buckets.evaluate(&change, glance, &mut scratches.0), expected);
+            prop_assert_eq!(layers.evaluate(&change, glance, &mut scratches.1), expected);
+            prop_assert_eq!(layers.evaluate(&change, glance, &mut scratches.2), expected);
         }
     }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     num::math::sqrt,
-    raster::{self, Change, Model, Plane, Scene, Unrender},
+    raster::{self, Change, Glance, Model, Plane, Scene, Unrender},
     view::ViewSet,
 };
 
@@ -86,10 +86,10 @@ impl<E: Unrender> ImageError<E> {
         self.engine.scratch()
     }
 
-    /// What the change would add to the sum; negative where it makes the pictures better.
+    /// What the change would add to the sum over the views of a glance; negative where it makes them better.
     #[must_use]
-    pub fn cost(&self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
-        self.engine.evaluate(change, scratch)
+    pub fn cost(&self, change: &Change<'_>, glance: Glance, scratch: &mut E::Scratch) -> i64 {
+        self.engine.evaluate(change, glance, scratch)
     }
 
     /// Makes the change and returns what it added to the sum.

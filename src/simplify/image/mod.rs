@@ -31,9 +31,13 @@ use super::memoryless::{self, MemorylessOptions};
 use crate::{
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     num::math::sqrt,
-    raster::{Scene, Unrender},
+    raster::{Glance, Scene, Unrender},
     view::ViewSet,
 };
+
+/// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
+/// instead 0.3 % more error and 0.5 % more distance, for 10 % less time in this part of a run.
+const EARLY: f64 = 0.7;
 
 /// The method: pictures of the mesh as it is, and how far they are from those of the original.
 #[derive(Debug)]
@@ -44,6 +48,8 @@ pub struct ImageDriven<E: Unrender> {
     limit: Option<f64>,
     /// What a unit of swept volume adds to the first key.
     swept_price: f64,
+    /// Every so-manieth view is enough for the first keys of an edge; 1 is all views.
+    glance: u32,
     scratch: PictureScratch<E::Scratch>,
 }
 
@@ -72,6 +78,7 @@ impl<E: Unrender> ImageDriven<E> {
             pictures,
             placement,
             swept_price: 0.0,
+            glance: 1,
         }
     }
 
@@ -82,6 +89,39 @@ impl<E: Unrender> ImageDriven<E> {
     pub fn with_swept_price(mut self, price: f64) -> Self {
         self.swept_price = price;
         self
+    }
+
+    /// Every so-manieth view is enough for the first keys of an edge, under which it waits to be looked at in all of
+    /// them; 1, the published method, unless asked for.
+    #[must_use]
+    pub fn with_glance(mut self, every: u32) -> Self {
+        self.glance = every;
+        self
+    }
+
+    /// Prices the collapse of the site's edge by the views of a glance.
+    fn price(
+        &self,
+        site: &Site<'_>,
+        glance: Glance,
+        scratch: &mut ImageScratch<E::Scratch>,
+    ) -> Result<Proposal, Refusal> {
+        let proposal = memoryless::propose(site, &self.placement)?;
+        let ImageScratch { pictures, patch } = scratch;
+        site.patch(proposal.position, patch);
+        let seen = self.pictures.cost(site.live, patch, glance, pictures);
+        let image = match glance {
+            Glance::Part(every) => {
+                let all = seen.saturating_mul(i64::from(every));
+                // The front of the queue is looked at anyway: better there too early than too late.
+                let early = |cost: i64| (cost as f64 * EARLY) as i64;
+                if all > 0 { early(all) } else { all }
+            }
+            _ => seen,
+        };
+        let swept = self.swept_price * sqrt(proposal.geometric.max(0.0));
+        let image = image.saturating_add(swept as i64);
+        Ok(Proposal { image, ..proposal })
     }
 
     /// The pictures and their distance from the original's.
@@ -115,19 +155,23 @@ impl<E: Unrender> Method for ImageDriven<E> {
     }
 
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        let proposal = memoryless::propose(site, &self.placement)?;
-        let ImageScratch { pictures, patch } = scratch;
-        site.patch(proposal.position, patch);
-        let image = self.pictures.cost(site.live, patch, pictures);
-        let swept = self.swept_price * sqrt(proposal.geometric.max(0.0));
-        let image = image.saturating_add(swept as i64);
-        Ok(Proposal { image, ..proposal })
+        self.price(site, Glance::Whole, scratch)
+    }
+
+    fn glances(&self) -> bool {
+        self.glance > 1
+    }
+
+    fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
+        self.price(site, Glance::Part(self.glance), scratch)
     }
 
     fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
         let Some(limit) = self.limit else { return true };
         // The proposal's cost may be stale: ask again.
-        let cost = self.pictures.cost(live, patch, &mut self.scratch);
+        let cost = self
+            .pictures
+            .cost(live, patch, Glance::Whole, &mut self.scratch);
         (self.pictures.error().sum() as i64 + cost) as f64 <= limit
     }
 

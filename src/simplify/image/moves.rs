@@ -7,7 +7,7 @@ use super::{Limits, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
     num::math,
-    raster::Unrender,
+    raster::{Glance, Unrender},
 };
 
 /// Farthest that a parabola is followed along one axis, in steps.
@@ -15,6 +15,9 @@ const REACH: f64 = 2.0;
 
 /// Farthest that a vertex goes for the surface, as a share of the mean length of its edges.
 const FARTHEST: f64 = 0.3;
+
+/// Most positions that are drawn for the sake of the surface. A third costs time and brings nothing that can be measured.
+const LOOKS: usize = 2;
 
 /// Buffers of one thread.
 #[derive(Debug)]
@@ -84,30 +87,45 @@ impl<S> Search<S> {
         let length = step * self.star.mean_edge(live);
         let origin = self.star.point;
         let mut lowest = origin;
-        for axis in &basis(normal, turn)[..axes] {
+        let mut expected = Parabolas::default();
+        for (axis, parabola) in basis(normal, turn).iter().zip(&mut expected.0).take(axes) {
             let ways = [1.0, -1.0];
             let costs = ways.map(|t| {
                 let to = origin + *axis * (t * length);
                 self.try_position(live, pictures, rules, to, &mut found)
             });
-            if let [Some(f), Some(b)] = costs {
-                lowest += *axis * (lowest_of_parabola(f as f64, b as f64) * length);
+            if let [Some(f), Some(b)] = costs.map(|cost| cost.map(|c| c as f64)) {
+                lowest += *axis * (lowest_of_parabola(f, b) * length);
+                *parabola = Parabola {
+                    axis: *axis / length,
+                    slope: 0.5 * (f - b),
+                    curvature: 0.5 * (f + b),
+                };
             }
         }
         self.try_position(live, pictures, rules, lowest, &mut found);
         let image = found.better.take();
-        self.weigh(live, pictures, limits, (image, normal), &mut found);
+        self.weigh(
+            live,
+            pictures,
+            limits,
+            (image, normal),
+            &expected,
+            &mut found,
+        );
         found
     }
 
     /// The best of the position that is best for the pictures, that which [fits](super::Deviation::fit) the surface, the
-    /// middle of the two, and the one's place along the tangents with the other's height.
+    /// middle of the two, and the one's place along the tangents with the other's height. Of the last three only those
+    /// are drawn that the parabolas and the surface promise something of.
     fn weigh<E: Unrender<Scratch = S>>(
         &mut self,
         live: &LiveMesh,
         pictures: &Pictures<E>,
         limits: Limits<'_>,
         (image, normal): (Option<(DVec3, i64)>, DVec3),
+        expected: &Parabolas,
         found: &mut Found,
     ) {
         let sum = pictures.error().sum() as f64;
@@ -128,30 +146,46 @@ impl<S> Search<S> {
                 origin + (step + fit) * 0.5,
             ]
         });
-        let candidates = [
-            image.map(|(to, cost)| (to, Some(cost))),
-            fit.map(|step| (origin + step, None)),
-            between.map(|[to, _]| (to, None)),
-            between.map(|[_, to]| (to, None)),
+        let places = [
+            fit.map(|step| origin + step),
+            between.map(|[to, _]| to),
+            between.map(|[_, to]| to),
         ];
         let mut before = None;
+        let mut promising = places.map(|to| {
+            let to = self.prepare(live, to?, limits.rules)?;
+            let cost = expected.cost(to - origin) as i64;
+            let balance = limits.balance(live, &self.patch, (cost, sum), &mut before);
+            Some((balance, to))
+        });
+        let key = |p: &Option<(f64, DVec3)>| p.map_or(f64::INFINITY, |(balance, _)| balance);
+        promising.sort_by(|a, b| key(a).total_cmp(&key(b)));
         let mut best = (0.0, 0);
-        for (to, cost) in candidates.into_iter().flatten() {
+        let mut judge = |hope: f64, to: DVec3, cost: Option<i64>| {
+            if hope >= best.0 {
+                return;
+            }
             let Some(to) = self.prepare(live, to, limits.rules) else {
-                continue;
+                return;
             };
             let cost = cost.unwrap_or_else(|| {
                 found.evaluations += 1;
-                pictures.cost(live, &self.patch, &mut self.pictures)
+                pictures.cost(live, &self.patch, Glance::Whole, &mut self.pictures)
             });
             if limits.falling && cost > 0 {
-                continue;
+                return;
             }
             let balance = limits.balance(live, &self.patch, (cost, sum), &mut before);
             if (balance, cost) < best && limits.keeps_sides(live, &self.patch) {
                 best = (balance, cost);
                 found.better = Some((to, cost));
             }
+        };
+        if let Some((to, cost)) = image {
+            judge(f64::NEG_INFINITY, to, Some(cost));
+        }
+        for (hope, to) in promising.into_iter().flatten().take(LOOKS) {
+            judge(hope, to, None);
         }
     }
 
@@ -165,12 +199,35 @@ impl<S> Search<S> {
         found: &mut Found,
     ) -> Option<i64> {
         let to = self.prepare(live, to, rules)?;
-        let cost = pictures.cost(live, &self.patch, &mut self.pictures);
+        let cost = pictures.cost(live, &self.patch, Glance::Whole, &mut self.pictures);
         found.evaluations += 1;
         if cost < found.better.map_or(0, |(_, best)| best) {
             found.better = Some((to, cost));
         }
         Some(cost)
+    }
+}
+
+/// What the pictures are expected to cost around a vertex: a parabola along every axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct Parabolas([Parabola; 3]);
+
+/// `slope t + curvature t^2` at `t` steps along an axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct Parabola {
+    /// The direction, over the length of a step.
+    axis: DVec3,
+    slope: f64,
+    curvature: f64,
+}
+
+impl Parabolas {
+    fn cost(&self, way: DVec3) -> f64 {
+        let along = self.0.iter().map(|p| {
+            let t = way.dot(p.axis);
+            (p.slope + p.curvature * t) * t
+        });
+        along.sum()
     }
 }
 

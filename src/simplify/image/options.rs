@@ -164,6 +164,11 @@ pub struct ImageOptions {
     /// [`ImageDriven::with_swept_price`]: super::ImageDriven::with_swept_price
     #[serde(default)]
     pub swept_weight: f64,
+    /// Edges wait under what every so-manieth view says of them until they come to the front of the queue, and only there
+    /// are looked at in all views; 1 is the published method: all views at once. Even numbers see one half of mixed
+    /// shading.
+    #[serde(default = "one")]
+    pub glance: u32,
     /// What follows the last collapse.
     #[serde(default)]
     pub polish: Polish,
@@ -191,6 +196,11 @@ impl ImageOptions {
             return Err(Error::Usage(format!(
                 "size is {size}; expected 1 to 4096 pixels"
             )));
+        }
+        if self.glance == 0 {
+            return Err(Error::Usage(
+                "a glance at every 0th view; expected 1 or more".into(),
+            ));
         }
         if ![1, 2, 4].contains(&self.samples) {
             return Err(Error::Usage(format!(

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     collapse::{LiveMesh, Patch},
-    raster::{Scene, Unrender},
+    raster::{Glance, Scene, Unrender},
     view::{Interpolation, ViewSet},
 };
 
@@ -62,17 +62,19 @@ impl<E: Unrender> Pictures<E> {
         }
     }
 
-    /// What the patch, not yet committed, would add to the error; negative where it makes the pictures better.
+    /// What the patch, not yet committed, would add to the error in the views of a glance; negative where it makes
+    /// those better.
     #[must_use]
     pub fn cost(
         &self,
         live: &LiveMesh,
         patch: &Patch,
+        glance: Glance,
         scratch: &mut PictureScratch<E::Scratch>,
     ) -> i64 {
         let PictureScratch { engine, change } = scratch;
         change.fill(&self.slots, live, patch, self.gouraud);
-        self.error.cost(&change.as_change(), engine)
+        self.error.cost(&change.as_change(), glance, engine)
     }
 
     /// Follows a patch, before or after `live` has it, and returns what it added to the error.
