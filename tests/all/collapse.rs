@@ -58,7 +58,7 @@ fn edge_counts(triangles: impl Iterator<Item = [u32; 3]>) -> EdgeCounts {
 }
 
 /// Everything the live mesh says about adjacency, against a rebuild from its triangles.
-fn assert_consistent(live: &LiveMesh) {
+pub(crate) fn assert_consistent(live: &LiveMesh) {
     let triangles = live_triangles(live);
     assert_eq!(triangles.len(), live.triangle_count());
     let mut at: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
