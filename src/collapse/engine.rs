@@ -11,7 +11,6 @@ use rayon::prelude::*;
 use super::{
     Changes, Counters, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule,
     Site,
-    legality::RING_LIMIT,
     queue::{self, Evaluation, Front, Queue},
 };
 use crate::{Error, Progress, Result};
@@ -237,6 +236,7 @@ impl<M: Method> Engine<M> {
                 self.inherited.push((other, queue.known(e)));
             }
         }
+        self.inherited.sort_unstable_by_key(|(other, _)| *other);
         self.live.apply(&self.patch, &mut self.changes);
         self.gathered = None;
         self.counters.collapses += 1;
@@ -248,8 +248,8 @@ impl<M: Method> Engine<M> {
         for &e in &self.changes.created {
             if let Some([a, b]) = self.live.edge(e) {
                 let other = if a == vertex { b } else { a };
-                let old = self.inherited.iter().find(|(x, _)| *x == other);
-                queue.inherit(e, old.and_then(|&(_, proposal)| proposal));
+                let old = self.inherited.binary_search_by_key(&other, |(x, _)| *x);
+                queue.inherit(e, old.ok().and_then(|i| self.inherited[i].1));
             }
         }
         // Every edge whose ring has a face of the patch ends at the new vertex or at a vertex of the link.
@@ -260,7 +260,7 @@ impl<M: Method> Engine<M> {
         for v in std::iter::once(vertex).chain(spokes) {
             // No collapse makes such a vertex, so none of its edges was ever in the queue; they enter it with the
             // collapse that brings the vertex below the limit.
-            if self.live.valence(v) > RING_LIMIT {
+            if self.live.valence(v) > self.method.ring_limit() {
                 continue;
             }
             for e in self.live.edges_at(v) {
@@ -487,10 +487,10 @@ impl<M: Method> Engine<M> {
     }
 }
 
-/// True where too many faces touch an edge to look at them.
-fn crowded(live: &LiveMesh, id: u32) -> bool {
+/// True where more than `limit` faces touch an edge; those at both ends count twice.
+fn crowded(live: &LiveMesh, id: u32, limit: usize) -> bool {
     live.edge(id)
-        .is_some_and(|[u, w]| live.valence(u) + live.valence(w) > RING_LIMIT)
+        .is_some_and(|[u, w]| live.valence(u) + live.valence(w) > limit)
 }
 
 fn evaluate<M: Method>(
@@ -500,7 +500,7 @@ fn evaluate<M: Method>(
     id: u32,
     (ring, scratch): (&mut Ring, &mut M::Scratch),
 ) -> Result<Proposal, Refusal> {
-    if crowded(live, id) {
+    if crowded(live, id, method.ring_limit()) {
         return Err(Refusal::Valence);
     }
     if !ring.gather(live, id) {

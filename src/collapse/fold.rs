@@ -11,7 +11,7 @@ use crate::num::math::sqrt;
 
 /// Tests the edges that a patch, not yet committed, makes or changes.
 ///
-/// O(faces * (faces + valence)).
+/// O(faces * (log faces + valence)), with the smaller valence of a side's ends.
 ///
 /// # Errors
 /// [`Refusal::Fold`].
@@ -31,7 +31,7 @@ pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refu
 
 /// How far the edges that a patch, not yet committed, makes or changes are beyond a cosine, summed, before and after.
 ///
-/// O(faces * (faces + valence)).
+/// O(faces * (log faces + valence)), with the smaller valence of a side's ends.
 #[must_use]
 pub fn foldedness(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
     let sum = |faces, after| {
@@ -136,6 +136,10 @@ fn changed(patch: &Patch) -> impl Fn(u32) -> bool {
     |id| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok()
 }
 
+/// Most faces that are looked through for the neighbours of one; beyond that sides are sorted, so that the faces around
+/// a hub do not cost their square.
+const FEW: usize = 48;
+
 /// The faces of a patch, before it or after.
 fn facets(live: &LiveMesh, patch: &Patch, faces: &[PatchFace], after: bool) -> Vec<Facet> {
     let facet = |f: &PatchFace| Facet {
@@ -164,19 +168,36 @@ fn each_angle(
     changed: impl Fn(u32) -> bool,
     mut found: impl FnMut(f64),
 ) {
+    let key = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut sides = Vec::new();
+    if facets.len() > FEW {
+        for (i, facet) in facets.iter().enumerate() {
+            let [a, b, c] = facet.corners;
+            sides.extend([[a, b], [b, c], [c, a]].map(|side| (key(side), i)));
+        }
+        sides.sort_unstable();
+    }
     for (i, facet) in facets.iter().enumerate() {
         for k in 0..3 {
             let side = [facet.corners[k], facet.corners[(k + 1) % 3]];
-            let within = facets.iter().enumerate().filter(|&(j, _)| j != i);
-            let mut beside = within.filter_map(|(j, f)| Some((j, along(f.corners, side)?, f)));
-            if let Some((j, forward, other)) = beside.next() {
+            let (neighbor, alone) = if sides.is_empty() {
+                beside(facets, i, side, 0..facets.len())
+            } else {
+                let start = sides.partition_point(|s| s.0 < key(side));
+                let same = sides[start..].iter().take_while(|s| s.0 == key(side));
+                beside(facets, i, side, same.map(|s| s.1))
+            };
+            if let Some((j, forward)) = neighbor {
                 // Every pair once.
-                if j > i && beside.next().is_none() {
-                    found(cosine(facet.normal, other.normal, forward));
+                if j > i && alone {
+                    found(cosine(facet.normal, facets[j].normal, forward));
                 }
                 continue;
             }
-            let mut outside = live.triangles_at(side[0]).filter_map(|id| {
+            // A hub may have a million faces.
+            let short = live.valence(side[0]) <= live.valence(side[1]);
+            let end = side[usize::from(!short)];
+            let mut outside = live.triangles_at(end).filter_map(|id| {
                 let corners = live.triangle(id)?;
                 let forward = along(corners, side)?;
                 (!changed(id)).then_some((corners, forward))
@@ -187,6 +208,20 @@ fn each_angle(
             }
         }
     }
+}
+
+/// The first face of `among` but `i` itself that has a side, whether it runs along that in its direction, and whether it
+/// is the only one.
+#[inline]
+fn beside(
+    facets: &[Facet],
+    i: usize,
+    side: [u32; 2],
+    among: impl Iterator<Item = usize>,
+) -> (Option<(usize, bool)>, bool) {
+    let others = among.filter(|&j| j != i);
+    let mut beside = others.filter_map(|j| Some((j, along(facets[j].corners, side)?)));
+    (beside.next(), beside.next().is_none())
 }
 
 /// Whether a face runs along a side in its direction; `None` where the side is not its own.

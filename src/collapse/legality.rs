@@ -74,11 +74,12 @@ macro_rules! refusals {
 }
 
 /// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
-/// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit.
+/// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit. A
+/// method may have a lower one: [`Method::ring_limit`](super::Method::ring_limit).
 pub const RING_LIMIT: usize = 512;
 
 refusals! {
-    /// More than [`RING_LIMIT`] faces touch the edge.
+    /// More than [`RING_LIMIT`] faces touch the edge, or than the method looks at.
     Valence => "valence",
     /// Nothing would be left of the mesh.
     LastTriangle => "last-triangle",

@@ -17,6 +17,9 @@ use crate::{
 /// No vertex, face, wedge, edge or corner.
 pub const NONE: u32 = u32::MAX;
 
+/// Edges at one end of an edge that are looked through without a look at the other end.
+const FEW: usize = 32;
+
 /// An edge: its ends and its number of faces.
 #[derive(Clone, Copy, Debug)]
 struct EdgeRecord {
@@ -25,7 +28,7 @@ struct EdgeRecord {
 }
 
 /// An edge as one of its ends sees it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Incident {
     other: u32,
     edge: u32,
@@ -341,7 +344,15 @@ impl LiveMesh {
     /// Where there is no such vertex.
     #[must_use]
     pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
-        let incident = self.edges_at.of(a).iter().find(|i| i.other == b);
+        let mut at = (self.edges_at.of(a), b);
+        if at.0.len() > FEW {
+            // A hub may have a million edges.
+            let others = self.edges_at.of(b);
+            if others.len() < at.0.len() {
+                at = (others, a);
+            }
+        }
+        let incident = at.0.iter().find(|i| i.other == at.1);
         incident.map(|i| i.edge)
     }
 

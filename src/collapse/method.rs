@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 
-use super::{Anchor, LiveMesh, Patch, Refusal, Ring, Rules, legality, ring_unfolded};
+use super::{
+    Anchor, LiveMesh, Patch, Refusal, Ring, Rules,
+    legality::{self, RING_LIMIT},
+    ring_unfolded,
+};
 
 /// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,6 +141,12 @@ pub trait Method: Sync {
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
         let _ = (live, edge);
         true
+    }
+
+    /// Most faces around an edge that may collapse, at most [`RING_LIMIT`]: fewer where evaluations are dear or would be
+    /// refused anyway. Always the same number.
+    fn ring_limit(&self) -> usize {
+        RING_LIMIT
     }
 
     /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before

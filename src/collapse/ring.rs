@@ -110,8 +110,15 @@ pub struct Ring {
     /// Number of feature edges at each end, the edge itself included.
     pub feature_degree: [u32; 2],
     ids: Vec<u32>,
+    /// Ascending vertices once they are collected.
     links: Vec<Link>,
+    /// Faces by some of their vertices.
+    keys: Vec<([u32; 3], usize)>,
 }
+
+/// Most faces of a ring that is looked through; beyond that it is sorted, so that the faces around a hub do not cost
+/// their square.
+const FEW: usize = 48;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Link {
@@ -212,6 +219,7 @@ impl Ring {
 
     fn gather_spokes(&mut self, live: &LiveMesh) {
         let [u, w] = self.ends;
+        let many = self.faces.len() > FEW;
         self.links.clear();
         for face in &self.faces {
             let beside = face.has_both();
@@ -220,7 +228,8 @@ impl Ring {
                     continue;
                 }
                 // A link has a handful of vertices: looking through it is faster than sorting all sides.
-                let known = self.links.iter().position(|l| l.vertex == v);
+                let mut links = self.links.iter();
+                let known = links.position(|l| !many && l.vertex == v);
                 let at = known.unwrap_or_else(|| {
                     self.links.push(Link {
                         vertex: v,
@@ -234,12 +243,20 @@ impl Ring {
                 link.beside |= beside;
             }
         }
+        self.links.sort_unstable_by_key(|l| l.vertex);
+        self.links.dedup_by(|link, into| {
+            let same = link.vertex == into.vertex;
+            if same {
+                into.faces = [0, 1].map(|end| into.faces[end] + link.faces[end]);
+                into.beside |= link.beside;
+            }
+            same
+        });
         let beside = self.links.iter().filter(|l| l.beside).count();
         let crowded = |l: &Link| l.faces[0] > 2 || l.faces[1] > 2;
         if self.edge_faces as usize > beside || self.links.iter().any(crowded) {
             self.count_different();
         }
-        self.links.sort_unstable_by_key(|l| l.vertex);
         self.spokes.clear();
         self.spokes.extend(self.links.iter().map(|l| Spoke {
             vertex: l.vertex,
@@ -262,15 +279,18 @@ impl Ring {
         for link in &mut self.links {
             link.faces = [0; 2];
         }
-        for (i, face) in self.faces.iter().enumerate() {
-            if self.faces[..i].iter().any(|f| sorted(f) == sorted(face)) {
-                continue;
-            }
+        self.keys.clear();
+        let faces = self.faces.iter().enumerate();
+        self.keys.extend(faces.map(|(i, f)| (sorted(f), i)));
+        self.keys.sort_unstable();
+        self.keys.dedup_by_key(|(corners, _)| *corners);
+        for &(corners, i) in &self.keys {
+            let face = &self.faces[i];
             self.edge_faces += u32::from(face.has_both());
-            for link in self.links.iter_mut() {
-                if face.corners.contains(&link.vertex) {
-                    link.faces[0] += u32::from(face.at[0] < 3);
-                    link.faces[1] += u32::from(face.at[1] < 3);
+            for v in corners {
+                if let Some(at) = find(&self.links, v) {
+                    self.links[at].faces[0] += u32::from(face.at[0] < 3);
+                    self.links[at].faces[1] += u32::from(face.at[1] < 3);
                 }
             }
         }
@@ -314,7 +334,7 @@ impl Ring {
     /// Faces that get the vertices of an earlier face, which was another face before, do not survive.
     fn mark_duplicates(&mut self) {
         let common = |v: u32| {
-            let link = self.links.iter().find(|l| l.vertex == v);
+            let link = find(&self.links, v).map(|at| self.links[at]);
             link.is_some_and(|l| l.faces[0] > 0 && l.faces[1] > 0)
         };
         let [u, w] = self.ends;
@@ -328,15 +348,20 @@ impl Ring {
         let link = |face: &RingFace| {
             let apex = face.apex();
             let (a, b) = (face.corners[(apex + 1) % 3], face.corners[(apex + 2) % 3]);
-            [a.min(b), a.max(b)]
+            [a.min(b), a.max(b), 0]
         };
-        for i in 1..self.faces.len() {
-            let face = self.faces[i];
-            let earlier = |f: &RingFace| {
-                f.survives && (f.at[0] < 3) != (face.at[0] < 3) && link(f) == link(&face)
-            };
-            if face.survives && self.faces[..i].iter().any(earlier) {
-                self.faces[i].survives = false;
+        self.keys.clear();
+        let faces = self.faces.iter().enumerate();
+        let staying = faces.filter(|(_, f)| f.survives);
+        self.keys.extend(staying.map(|(i, f)| (link(f), i)));
+        self.keys.sort_unstable();
+        for same in self.keys.chunk_by(|a, b| a.0 == b.0) {
+            // Whether a face at either end stays.
+            let mut stays = [false; 2];
+            for &(_, i) in same {
+                let end = usize::from(self.faces[i].at[0] == 3);
+                self.faces[i].survives = !stays[1 - end];
+                stays[end] |= self.faces[i].survives;
             }
         }
     }
@@ -350,13 +375,29 @@ impl Ring {
             return;
         }
         let [u, w] = self.ends;
-        self.edge_feature |= wedge::is_feature(live, &self.faces, [u, w]);
+        self.edge_feature |= wedge::is_feature(live, self.faces.iter(), [u, w]);
+        // Faces by each of their vertices, ascending.
+        self.keys.clear();
+        if self.faces.len() > FEW {
+            let faces = self.faces.iter().enumerate();
+            let corners = faces.flat_map(|(i, f)| f.corners.map(|v| ([v, 0, 0], i)));
+            self.keys.extend(corners);
+            self.keys.sort_unstable();
+        }
         for i in 0..self.spokes.len() {
             for (end, v) in self.ends.into_iter().enumerate() {
                 let spoke = self.spokes[i];
-                let feature = spoke.faces[end] > 2
-                    || (spoke.faces[end] == 2
-                        && wedge::is_feature(live, &self.faces, [v, spoke.vertex]));
+                let is_feature = || {
+                    let ends = [v, spoke.vertex];
+                    if self.faces.len() <= FEW {
+                        return wedge::is_feature(live, self.faces.iter(), ends);
+                    }
+                    let start = self.keys.partition_point(|k| k.0[0] < spoke.vertex);
+                    let at = self.keys[start..].iter();
+                    let at = at.take_while(|k| k.0[0] == spoke.vertex);
+                    wedge::is_feature(live, at.map(|&(_, i)| &self.faces[i]), ends)
+                };
+                let feature = spoke.faces[end] > 2 || (spoke.faces[end] == 2 && is_feature());
                 self.spokes[i].feature[end] = feature;
                 self.feature_degree[end] += u32::from(feature);
             }
@@ -376,7 +417,7 @@ impl Ring {
 
     /// True where the faces at an end do not hang together through edges: two sheets that touch in a point.
     ///
-    /// O(faces) for the usual fan, O(faces^2) in the worst case.
+    /// O(faces) for the usual fan, O(faces log faces) around a hub.
     #[must_use]
     pub fn is_pinched(&self, end: usize) -> bool {
         let mut fan = [[0_u32; 2]; 16];
@@ -409,27 +450,35 @@ impl Ring {
     }
 
     fn is_pinched_wide(&self, end: usize) -> bool {
-        let faces: Vec<&RingFace> = self.faces.iter().filter(|f| f.at[end] < 3).collect();
-        let mut reached = vec![false; faces.len()];
-        let mut stack = vec![0];
-        reached[0] = true;
-        while let Some(i) = stack.pop() {
-            for j in 0..faces.len() {
-                if !reached[j] && touch(faces[i], faces[j], self.ends[end]) {
-                    reached[j] = true;
-                    stack.push(j);
-                }
-            }
+        // Faces hang together where the vertices across from the end do; the last one is the other end.
+        let mut parents: Vec<usize> = (0..=self.spokes.len()).collect();
+        let index = |v: u32| self.spoke_index(v).unwrap_or(self.spokes.len());
+        let faces = self.faces.iter().filter(|f| f.at[end] < 3);
+        let sides = faces.map(|f| {
+            let apex = usize::from(f.at[end]);
+            [1, 2].map(|k| index(f.corners[(apex + k) % 3]))
+        });
+        for side in sides.clone() {
+            let [a, b] = side.map(|v| root(&mut parents, v));
+            parents[a.max(b)] = a.min(b);
         }
-        reached.contains(&false)
+        let mut roots = sides.map(|[a, _]| root(&mut parents, a));
+        let first = roots.next();
+        roots.any(|r| Some(r) != first)
     }
 }
 
-/// True where two faces at `center` share another vertex, hence an edge.
-fn touch(f: &RingFace, g: &RingFace, center: u32) -> bool {
-    f.corners
-        .iter()
-        .any(|&v| v != center && g.corners.contains(&v))
+fn find(links: &[Link], vertex: u32) -> Option<usize> {
+    links.binary_search_by_key(&vertex, |l| l.vertex).ok()
+}
+
+/// The root of a forest's tree; makes the way there shorter.
+fn root(parents: &mut [usize], mut at: usize) -> usize {
+    while parents[at] != at {
+        parents[at] = parents[parents[at]];
+        at = parents[at];
+    }
+    at
 }
 
 /// Twice the area of a triangle along its normal.

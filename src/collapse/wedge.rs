@@ -99,12 +99,16 @@ pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {
 }
 
 /// True where attributes or materials differ between the ring's faces at the edge `ends`, or its texture is mirrored
-/// there.
+/// there; `faces` has at least those of the ring at that edge, in its order.
 #[must_use]
-pub(super) fn is_feature(live: &LiveMesh, faces: &[RingFace], ends: [u32; 2]) -> bool {
+pub(super) fn is_feature<'a>(
+    live: &LiveMesh,
+    faces: impl Iterator<Item = &'a RingFace>,
+    ends: [u32; 2],
+) -> bool {
     let corner = |f: &RingFace, v: u32| f.corners.iter().position(|&c| c == v);
     let at_edge = |f: &RingFace| Some([corner(f, ends[0])?, corner(f, ends[1])?]);
-    let mut at = faces.iter().filter_map(|f| Some((f, at_edge(f)?)));
+    let mut at = faces.filter_map(|f| Some((f, at_edge(f)?)));
     let Some((first, first_at)) = at.next() else {
         return false;
     };

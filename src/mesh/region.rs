@@ -1,5 +1,7 @@
 //! The part of a mesh near some boxes.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -7,6 +9,48 @@ use super::{Mesh, MeshParts};
 
 /// Cells along a side of the grid.
 const GRID: usize = 128;
+
+/// Rows of cells that are looked through for one face. A mesh may consist of faces across all of it.
+const ROWS: usize = 64;
+
+/// For every corner of the grid, how many of the cells below it along all axes are marked.
+struct Counts(Vec<u32>);
+
+impl Counts {
+    /// Corners along a side.
+    const SIDE: usize = GRID + 1;
+
+    fn at(x: usize, y: usize, z: usize) -> usize {
+        (z * Self::SIDE + y) * Self::SIDE + x
+    }
+
+    fn of(marked: &[bool]) -> Self {
+        let mut counts = vec![0_u32; Self::SIDE * Self::SIDE * Self::SIDE];
+        for z in 0..GRID {
+            for y in 0..GRID {
+                let mut row = 0;
+                for x in 0..GRID {
+                    row += u32::from(marked[(z * GRID + y) * GRID + x]);
+                    let at = |y, z| counts[Self::at(x + 1, y, z)];
+                    // The last term is a part of either other one.
+                    let count = row + at(y, z + 1) + at(y + 1, z) - at(y, z);
+                    counts[Self::at(x + 1, y + 1, z + 1)] = count;
+                }
+            }
+        }
+        Self(counts)
+    }
+
+    /// How many cells are marked from one to another, both included.
+    fn within(&self, a: [usize; 3], b: [usize; 3]) -> u32 {
+        let below = |x: usize, y: usize, z: usize| self.0[Self::at(x, y, z)];
+        let [x, y, z] = b.map(|i| i + 1);
+        let layers = |z: usize| {
+            (below(x, y, z) + below(a[0], a[1], z)) - (below(a[0], y, z) + below(x, a[1], z))
+        };
+        layers(z) - layers(a[2])
+    }
+}
 
 impl Mesh {
     /// The faces that may touch one of the boxes (least and largest corner), of every `stride`-th one (0 is as 1), in
@@ -35,9 +79,14 @@ impl Mesh {
                 }
             }
         }
+        let counts = OnceLock::new();
         let touches = |face: &&[u32; 3]| {
             let [p, q, r] = face.map(|v| self.positions()[v as usize]);
             let (a, b) = (cell(p.min(q).min(r)), cell(p.max(q).max(r)));
+            if (b[2] - a[2] + 1) * (b[1] - a[1] + 1) > ROWS {
+                let counts = counts.get_or_init(|| Counts::of(&near));
+                return counts.within(a, b) > 0;
+            }
             (a[2]..=b[2]).any(|z| (a[1]..=b[1]).any(|y| near[row(a, b, y, z)].contains(&true)))
         };
         let faces: Vec<[u32; 3]> = self
@@ -90,6 +139,28 @@ mod tests {
             let part = mesh.near(&[[low, high]], 1);
             assert_eq!(part.positions(), mesh.positions());
         }
+    }
+
+    #[test]
+    fn a_face_across_the_whole_grid_misses_no_marked_cell_and_finds_none_elsewhere() {
+        let mut marked = vec![false; GRID * GRID * GRID];
+        let (mut x, mut cells) = (12_345_usize, Vec::new());
+        for _ in 0..40 {
+            x = (x * 69_069 + 1) % marked.len();
+            marked[x] = true;
+            cells.push([x % GRID, x / GRID % GRID, x / (GRID * GRID)]);
+        }
+        let counts = Counts::of(&marked);
+        for (i, &p) in cells.iter().enumerate() {
+            for &q in &cells[i..] {
+                let a = [0, 1, 2].map(|k| p[k].min(q[k]));
+                let b = [0, 1, 2].map(|k| p[k].max(q[k]));
+                let inside = |c: &&[usize; 3]| (0..3).all(|k| a[k] <= c[k] && c[k] <= b[k]);
+                let expected = cells.iter().filter(inside).count();
+                assert_eq!(counts.within(a, b) as usize, expected, "{a:?} to {b:?}");
+            }
+        }
+        assert_eq!(counts.within([0; 3], [GRID - 1; 3]), 40);
     }
 
     #[test]

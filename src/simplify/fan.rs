@@ -11,6 +11,9 @@ use glam::DVec3;
 use super::memoryless::{Gradient, MemorylessOptions, Objective};
 use crate::collapse::{LiveMesh, Patch, legality::RING_LIMIT};
 
+/// Most faces of a patch that are looked through for their vertices; beyond that those are sorted.
+const FEW: usize = 48;
+
 /// The sums at one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Fan {
@@ -76,9 +79,16 @@ impl Fans {
         let mut touched = std::mem::take(&mut self.touched);
         touched.clear();
         self.growth.clear();
-        for v in patch.removed.iter().flat_map(|f| f.corners) {
-            if !touched.contains(&v) {
-                touched.push(v);
+        let corners = patch.removed.iter().flat_map(|f| f.corners);
+        if patch.removed.len() > FEW {
+            touched.extend(corners);
+            touched.sort_unstable();
+            touched.dedup();
+        } else {
+            for v in corners {
+                if !touched.contains(&v) {
+                    touched.push(v);
+                }
             }
         }
         for &v in &touched {

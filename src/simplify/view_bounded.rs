@@ -163,6 +163,9 @@ impl ViewBounded {
     }
 }
 
+/// Most faces around an edge that may collapse: every piece of the map in them is cut along all of them.
+const RING_LIMIT: usize = 64;
+
 /// Least coordinates along the axes along which a mesh is this many sizes away from the origin; 0 along others.
 /// Differences of coordinates that are alike in all but so many bits are exact.
 const FAR: f64 = 512.0;
@@ -262,6 +265,10 @@ impl Method for ViewBounded {
 
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
         self.placing.may_fall(live, edge)
+    }
+
+    fn ring_limit(&self) -> usize {
+        RING_LIMIT
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

@@ -53,7 +53,10 @@ impl Glancing {
         random.unit();
         let image = (random.next() % 7) as i64 - 3;
         let length = self.off.end - self.off.start;
-        [image, self.off.start + (random.next() % length as u64) as i64]
+        [
+            image,
+            self.off.start + (random.next() % length as u64) as i64,
+        ]
     }
 }
 
@@ -108,7 +111,7 @@ fn edge_counts(triangles: impl Iterator<Item = [u32; 3]>) -> EdgeCounts {
 }
 
 /// Everything the live mesh says about adjacency, against a rebuild from its triangles.
-fn assert_consistent(live: &LiveMesh) {
+pub(crate) fn assert_consistent(live: &LiveMesh) {
     let triangles = live_triangles(live);
     assert_eq!(triangles.len(), live.triangle_count());
     let mut at: BTreeMap<u32, Vec<u32>> = BTreeMap::new();

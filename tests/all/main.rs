@@ -20,6 +20,7 @@ mod golden;
 mod guided;
 mod history;
 mod hostile;
+mod hubs;
 mod image;
 mod interior;
 mod io;

@@ -102,6 +102,8 @@ pub struct Fan {
 #[derive(Clone, Copy)]
 struct Sector {
     face: Face,
+    /// Its place among the faces before.
+    index: usize,
     apex: usize,
 }
 
@@ -123,12 +125,12 @@ impl Fan {
         let is_end = |v: &u32| *v == collapse.keep || *v == collapse.gone;
         let mut sectors = Vec::with_capacity(collapse.removed.len());
         let mut beside = 0;
-        for &face in collapse.removed {
+        for (index, &face) in collapse.removed.iter().enumerate() {
             let mut ends = face.corners.iter().filter(|v| is_end(v));
             match (ends.next(), ends.next()) {
                 (Some(_), None) => {
                     let apex = face.corners.iter().position(is_end)?;
-                    sectors.push(Sector { face, apex });
+                    sectors.push(Sector { face, index, apex });
                 }
                 _ => beside += 1,
             }
@@ -136,7 +138,8 @@ impl Fan {
         if sectors.len() != collapse.added.len() || sectors.is_empty() {
             return None;
         }
-        let closed = in_order(&mut sectors)?;
+        let closed;
+        (sectors, closed) = in_order(&sectors)?;
         let ends = [sectors[0], sectors[sectors.len() - 1]].map(|s| s.face.corners[s.apex]);
         let whole = match (closed, beside) {
             (true, 2) => true,
@@ -192,9 +195,10 @@ struct Layout {
 impl Layout {
     /// The parts after the collapse of an edge inside: one for each face.
     fn surround(&mut self, collapse: &Collapse<'_>, sectors: &[Sector], new: DVec2) -> Option<()> {
+        let after = After::of(collapse);
         for sector in sectors {
-            let face = after(collapse, sector)?;
-            let mut plane = self.before_of(sector)?.plane;
+            let face = after.face(sector)?;
+            let mut plane = self.before[sector.index].plane;
             plane[sector.apex] = new;
             self.parts
                 .push((Part::new(face, plane, CORNERS)?, sector.apex));
@@ -229,9 +233,10 @@ impl Layout {
                 .lerp(projection.of_point(at_first), along)
         };
         let count = sectors.len();
+        let after = After::of(collapse);
         for (i, sector) in sectors.iter().enumerate() {
-            let face = after(collapse, sector)?;
-            let before = self.before_of(sector)?;
+            let face = after.face(sector)?;
+            let before = &mut self.before[sector.index];
             let plane = before.plane;
             let (apex, from, to) = (sector.apex, (sector.apex + 1) % 3, (sector.apex + 2) % 3);
             let mut moved = plane;
@@ -292,44 +297,61 @@ impl Layout {
         let star: f64 = self.parts.iter().map(|(p, _)| double_area(&p.plane)).sum();
         (before - kept - star).abs() <= AREA_ERROR
     }
-
-    fn before_of(&mut self, sector: &Sector) -> Option<&mut Before> {
-        let id = sector.face.id;
-        self.before.iter_mut().find(|b| b.face.id == id)
-    }
 }
 
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The face of a sector after the collapse, as it was handed over.
-fn after(collapse: &Collapse<'_>, sector: &Sector) -> Option<Face> {
-    let face = collapse.added.iter().find(|f| f.id == sector.face.id)?;
-    (face.corners[sector.apex] == collapse.keep
-        && face.corners[(sector.apex + 1) % 3] == sector.from()
-        && face.corners[(sector.apex + 2) % 3] == sector.to())
-    .then_some(*face)
+/// The faces after a collapse, by their ids.
+struct After {
+    keep: u32,
+    faces: Vec<Face>,
+}
+
+impl After {
+    fn of(collapse: &Collapse<'_>) -> Self {
+        let mut faces = collapse.added.to_vec();
+        faces.sort_by_key(|f| f.id);
+        let keep = collapse.keep;
+        Self { keep, faces }
+    }
+
+    /// The face of a sector, as it was handed over.
+    fn face(&self, sector: &Sector) -> Option<Face> {
+        let at = self.faces.binary_search_by_key(&sector.face.id, |f| f.id);
+        let face = self.faces[at.ok()?];
+        (face.corners[sector.apex] == self.keep
+            && face.corners[(sector.apex + 1) % 3] == sector.from()
+            && face.corners[(sector.apex + 2) % 3] == sector.to())
+        .then_some(face)
+    }
 }
 
 /// Brings sectors into the order of their sides, each beginning where the one before ends; true where the last one ends
 /// where the first begins. `None` where they form no single row.
-fn in_order(sectors: &mut [Sector]) -> Option<bool> {
-    let starts = |sectors: &[Sector], v: u32| sectors.iter().filter(|s| s.from() == v).count();
-    let comes = |sectors: &[Sector], v: u32| sectors.iter().filter(|s| s.to() == v).count();
-    if sectors
-        .iter()
-        .any(|s| starts(sectors, s.from()) > 1 || comes(sectors, s.to()) > 1)
-    {
-        return None;
+///
+/// O(sectors log sectors).
+fn in_order(sectors: &[Sector]) -> Option<(Vec<Sector>, bool)> {
+    let by = |vertex: fn(&Sector) -> u32| {
+        let all = sectors.iter().enumerate();
+        let mut keys: Vec<(u32, usize)> = all.map(|(i, s)| (vertex(s), i)).collect();
+        keys.sort_unstable();
+        let once = keys.windows(2).all(|k| k[0].0 != k[1].0);
+        once.then_some(keys)
+    };
+    let (starts, ends) = (by(Sector::from)?, by(Sector::to)?);
+    let find = |keys: &[(u32, usize)], v: u32| keys.binary_search_by_key(&v, |k| k.0).ok();
+    let first = sectors.iter().find(|s| find(&ends, s.from()).is_none());
+    let mut row = Vec::with_capacity(sectors.len());
+    row.push(*first.unwrap_or(sectors.first()?));
+    while row.len() < sectors.len() {
+        let end = row[row.len() - 1].to();
+        if end == row[0].from() {
+            return None;
+        }
+        row.push(sectors[starts[find(&starts, end)?].1]);
     }
-    let first = (0..sectors.len()).find(|&i| comes(sectors, sectors[i].from()) == 0);
-    sectors.swap(0, first.unwrap_or(0));
-    for i in 1..sectors.len() {
-        let end = sectors[i - 1].to();
-        let next = (i..sectors.len()).find(|&k| sectors[k].from() == end)?;
-        sectors.swap(i, next);
-    }
-    let closed = sectors[sectors.len() - 1].to() == sectors[0].from();
-    (closed == first.is_none()).then_some(closed)
+    let closed = row[row.len() - 1].to() == row[0].from();
+    (closed == first.is_none()).then_some((row, closed))
 }
 
 /// Where the foot of `p` lies between `from` (0) and `to` (1), not clamped; 0 where these are one point.

@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::{Facet, Reach, reach::halve};
 
 /// Faces that one test can tell apart.
-const FACES: usize = 128;
+const FACES: usize = Coverage::FACES;
 /// Pieces that one test looks at, at most.
 const PIECES: usize = 1 << 16;
 
@@ -57,6 +57,9 @@ pub struct Change {
 }
 
 impl Coverage {
+    /// Most faces that may come by a change.
+    pub const FACES: usize = u128::BITS as usize;
+
     /// Every triangle of the original is a live face and its own witness. A triangle that repeats a vertex is none, and
     /// not asked for. O(n).
     #[must_use]
@@ -87,6 +90,16 @@ impl Coverage {
         &self.witnesses[triangle as usize]
     }
 
+    /// About how many triangles have one of some faces as a witness: no fewer, each as often as it has one.
+    ///
+    /// # Panics
+    /// Where there is no such face.
+    #[must_use]
+    pub fn load(&self, faces: &[u32]) -> usize {
+        let each = faces.iter().map(|&f| self.stands_for[f as usize].len());
+        each.sum()
+    }
+
     /// Collects what a change concerns that takes away the faces `removed`; `corners_of` gives the corners of a live
     /// face that stays.
     pub fn gather(
@@ -106,13 +119,15 @@ impl Coverage {
                 trial.met_triangles[t as usize] = trial.round;
                 trial.ids.push(t);
                 for g in witnesses {
-                    if !removed.contains(g) && !trial.staying.contains(g) {
+                    if trial.staying.len() < FACES / 2
+                        && !removed.contains(g)
+                        && !trial.staying.contains(g)
+                    {
                         trial.staying.push(*g);
                     }
                 }
             }
         }
-        trial.staying.truncate(FACES / 2);
         trial.staying.retain(|&g| match corners_of(g) {
             Some(corners) => {
                 trial.facets.push(Facet::new(corners));

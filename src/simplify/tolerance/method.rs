@@ -12,7 +12,7 @@ use crate::{
         envelope::{Change, Coverage, Pieces, Reach, Surface, Trial},
         tolerance::{Neighborhood, OldFace, Quadratic, Volume},
     },
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site, legality},
     num::math,
 };
 
@@ -22,6 +22,12 @@ const DOUBLINGS: u32 = 5;
 const TOLERANCE: f64 = 1e-9;
 /// Bounds beyond so many diagonals mean the same.
 const FAR: f64 = 4.0;
+/// Faces around an edge of which so many are left that [`Coverage`] can tell them apart: two go, and count twice.
+const RING_LIMIT: usize = Coverage::FACES + 4;
+/// Around an edge with more than so many faces, original triangles times faces that are looked at, at most: every
+/// collapse there changes so many rings. Collapses at the rim make such a hub smaller.
+const MANY: usize = 32;
+const WORK: usize = 1 << 17;
 /// Edges that are evaluated together. Part of the result's making, not of the result.
 const AHEAD: usize = 32;
 
@@ -206,6 +212,10 @@ impl Method for ToleranceMethod {
         if let Some(coverage) = &self.coverage {
             scratch.removed.clear();
             scratch.removed.extend(site.ring.faces.iter().map(|f| f.id));
+            let faces = scratch.removed.len();
+            if faces > MANY && faces * coverage.load(&scratch.removed) > WORK {
+                return Err(Refusal::Valence);
+            }
             let corners = |f| site.live.points(f);
             coverage.gather(&scratch.removed, corners, self.reach, &mut scratch.trial);
         }
@@ -253,6 +263,15 @@ impl Method for ToleranceMethod {
 
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
         self.memoryless.may_fall(live, edge)
+    }
+
+    /// A larger ring than the certificate can tell apart would be refused after all the work.
+    fn ring_limit(&self) -> usize {
+        if self.coverage.is_some() {
+            RING_LIMIT
+        } else {
+            legality::RING_LIMIT
+        }
     }
 
     /// Another collapse may have changed a witness outside the ring: the test is made again, and finds the witnesses.
