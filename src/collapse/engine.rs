@@ -258,7 +258,7 @@ impl<M: Method> Engine<M> {
         queue.next_round();
         let spokes = self.ring.spokes.iter().map(|s| s.vertex);
         for v in std::iter::once(vertex).chain(spokes) {
-            // No collapse makes such a vertex, so none of its edges was ever in the queue; they enter it with the
+            // No collapse makes such a vertex: its edges were never evaluated as legal, and are looked at again with the
             // collapse that brings the vertex below the limit.
             if self.live.valence(v) > self.method.ring_limit() {
                 continue;

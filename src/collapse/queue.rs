@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Heap, Key, LiveMesh, Proposal};
 
-/// When an edge whose ring changed is evaluated again.
+/// When an edge whose ring changed is evaluated again, or glanced at where the method glances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Schedule {
@@ -31,7 +31,7 @@ pub(super) enum Evaluation {
 struct Mark {
     /// The round in which the edge was last marked.
     round: u32,
-    /// Its ring changed since it was evaluated.
+    /// Its ring changed since it was evaluated, or it was only glanced at.
     dirty: bool,
     /// It is in the heap.
     queued: bool,
@@ -44,14 +44,14 @@ struct Mark {
 pub(super) struct Queue {
     heap: Heap,
     marks: Vec<Mark>,
-    /// The last legal proposal of every edge; stale where it is marked dirty.
+    /// The last legal proposal of every edge; stale, or that of a glance, where it is marked dirty.
     proposals: Vec<Option<Proposal>>,
     round: u32,
 }
 
 /// What comes to the front.
 pub(super) enum Front {
-    /// Its ring changed since it was evaluated.
+    /// Its ring changed since it was evaluated, or it was only glanced at.
     Stale(u32),
     /// The next collapse.
     Ready(u32, Proposal),

@@ -57,3 +57,41 @@ impl Deepest {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::stacks::Stacks;
+
+    #[test]
+    fn only_what_is_behind_every_sample_of_its_squares_is_hidden() {
+        let image = Region::image(10, 7); // squares at the right and below are cut off
+        let nothing = u64::from(u32::MAX) << 32;
+        let mut stacks = Stacks::new(70, 0, &[], 4, nothing);
+        let mut deepest = Deepest::new(image);
+        let depth = |at: usize| (at as u32 * 7 % 70 + 1) << 16 | 5;
+        for at in 0..70 {
+            assert!(!deepest.hides(image, u32::MAX), "the background is deepest");
+            stacks.insert(at, 0, u64::from(depth(at)) << 32);
+            deepest.measure(image, image, stacks.shown());
+        }
+        for (x0, y0) in (0..70).map(|at| (at % 10, at / 10)) {
+            for (x1, y1) in [(x0 + 1, y0 + 1), (10, y0 + 1), (x0 + 1, 7), (10, 7)] {
+                let region = Region { x0, y0, x1, y1 };
+                let near =
+                    |v: i32, from: i32, to: i32| v >> 2 >= from >> 2 && v >> 2 <= (to - 1) >> 2;
+                let squares = (0..70).filter(|at| near(at % 10, x0, x1) && near(at / 10, y0, y1));
+                let most = squares
+                    .map(|at| depth(at as usize) >> 16)
+                    .max()
+                    .expect("one");
+                assert!(
+                    !deepest.hides(region, most << 16 | 0xffff),
+                    "as deep, to 16 bits"
+                );
+                assert!(deepest.hides(region, (most + 1) << 16));
+            }
+        }
+        assert!(deepest.hides(Region::EMPTY, 0));
+    }
+}

@@ -38,7 +38,7 @@ pub enum Glance {
     /// All of them.
     #[default]
     Whole,
-    /// Every so-manieth, from the first: a glance. Steps below 2 are the whole.
+    /// One of every so many, from the first. Steps below 2 are the whole.
     Part(u32),
     /// Those that such a part leaves out.
     Rest(u32),

@@ -163,7 +163,7 @@ impl ViewBounded {
     }
 }
 
-/// Most faces around an edge that may collapse: every piece of the map in them is cut along all of them.
+/// Most faces around an edge that may collapse, its own counted at both ends: every piece of the map in them is cut along all of them.
 const RING_LIMIT: usize = 64;
 
 /// Least coordinates along the axes along which a mesh is this many sizes away from the origin; 0 along others.

@@ -48,7 +48,7 @@ fn where_images_fit_noise_the_memoryless_result_is_returned_to_the_bit() {
     let outcome = run(&mesh, &blind(640));
     let comparison = outcome.comparison.expect("compared");
     assert!(comparison.fell_back, "{comparison:?}");
-    assert!(comparison.image > comparison.memoryless * 0.99);
+    assert!(comparison.image > comparison.memoryless * 0.97);
     let geometry = run(&mesh, &Options::memoryless(Amount::Triangles(640)));
     assert_eq!(
         content_sha256(&outcome.mesh),
@@ -85,6 +85,38 @@ fn where_images_pay_nothing_changes() {
     let free = run(&mesh, &with(&options, |own| own.fall_back = false));
     assert_eq!(content_sha256(&kept.mesh), content_sha256(&free.mesh));
     assert_eq!(kept.error_rms, free.error_rms);
+}
+
+/// At a boundary a collapse takes one triangle, elsewhere two: results for one target differ by one.
+#[test]
+fn geometry_is_not_given_up_for_one_triangle_more_than_images_left() {
+    let mesh = canonical(&generate::grid(16, 16, generate::Height::Waves)).mesh;
+    let mut more = 0;
+    for triangles in 201..213 {
+        let outcome = run(&mesh, &blind(triangles));
+        let comparison = outcome.comparison.expect("compared");
+        let pays = comparison.image < comparison.memoryless * 0.97 && comparison.memoryless >= 0.25;
+        assert_eq!(comparison.fell_back, !pays, "{triangles}: {comparison:?}");
+        assert!(outcome.mesh.triangles().len() as u64 <= triangles);
+        let images = run(&mesh, &with(&blind(triangles), |own| own.fall_back = false));
+        let left = images.mesh.triangles().len();
+        more += usize::from(comparison.fell_back && outcome.mesh.triangles().len() > left);
+    }
+    assert!(more > 0, "no case has what this is about");
+}
+
+/// Flat and shaded by the normals of its vertices, a square looks alike with any triangles.
+#[test]
+fn differences_far_below_a_level_of_luma_are_no_reason_for_images() {
+    let mesh = canonical(&generate::grid(16, 16, generate::Height::Flat)).mesh;
+    for triangles in [101, 204, 205] {
+        let options = with(&Options::image(Amount::Triangles(triangles)), |own| {
+            own.shading = DrivingShading::Gouraud;
+        });
+        let comparison = run(&mesh, &options).comparison.expect("compared");
+        assert!(comparison.memoryless < 0.25, "{comparison:?}");
+        assert!(comparison.fell_back, "{triangles}: {comparison:?}");
+    }
 }
 
 #[test]

@@ -105,6 +105,7 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
             cameras_every: 2,
             deviation_weight: 0.3,
         },
+        fall_back: false,
         ..Preset::Default.options()
     };
     let mixed = ImageOptions {

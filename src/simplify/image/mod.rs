@@ -39,6 +39,9 @@ use crate::{
 /// instead 0.3 % more error and 0.5 % more distance, for 10 % less time in this part of a run.
 const EARLY: f64 = 0.7;
 
+/// Fewest views that tell a cost from a glance.
+const LEAST_SEEN: usize = 5;
+
 /// The method: pictures of the mesh as it is, and how far they are from those of the original.
 #[derive(Debug)]
 pub struct ImageDriven<E: Unrender> {
@@ -48,8 +51,10 @@ pub struct ImageDriven<E: Unrender> {
     limit: Option<f64>,
     /// What a unit of swept volume adds to the first key.
     swept_price: f64,
-    /// Every so-manieth view is enough for the first keys of an edge; 1 is all views.
+    /// Of every so many views one is enough for the first keys of an edge; 1 is all views.
     glance: u32,
+    /// Views of the set.
+    views: usize,
     scratch: PictureScratch<E::Scratch>,
 }
 
@@ -79,6 +84,7 @@ impl<E: Unrender> ImageDriven<E> {
             placement,
             swept_price: 0.0,
             glance: 1,
+            views: set.views.len(),
         }
     }
 
@@ -91,11 +97,12 @@ impl<E: Unrender> ImageDriven<E> {
         self
     }
 
-    /// Every so-manieth view is enough for the first keys of an edge, under which it waits to be looked at in all of
-    /// them; 1, the published method, unless asked for.
+    /// Of every so many views one is enough for the first keys of an edge, under which it waits to be looked at in all of
+    /// them; 1, the published method, unless asked for. Where a glance would see fewer than five views, it sees all.
     #[must_use]
     pub fn with_glance(mut self, every: u32) -> Self {
-        self.glance = every;
+        let seen = self.views / every.max(1) as usize;
+        self.glance = if seen < LEAST_SEEN { 1 } else { every };
         self
     }
 
@@ -112,7 +119,8 @@ impl<E: Unrender> ImageDriven<E> {
         let seen = self.pictures.cost(site.live, patch, glance, pictures);
         let image = match glance {
             Glance::Part(every) => {
-                let all = seen.saturating_mul(i64::from(every));
+                let part = self.views.div_ceil(every.max(1) as usize).max(1);
+                let all = (i128::from(seen) * self.views as i128 / part as i128) as i64;
                 // The front of the queue is looked at anyway: better there too early than too late.
                 let early = |cost: i64| (cost as f64 * EARLY) as i64;
                 if all > 0 { early(all) } else { all }

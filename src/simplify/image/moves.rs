@@ -117,8 +117,8 @@ impl<S> Search<S> {
     }
 
     /// The best of the position that is best for the pictures, that which [fits](super::Deviation::fit) the surface, the
-    /// middle of the two, and the one's place along the tangents with the other's height. Of the last three only those
-    /// are drawn that the parabolas and the surface promise something of.
+    /// middle of the two, and the one's place along the tangents with the other's height. Of the last three at most
+    /// [`LOOKS`] are drawn, and only where the parabolas and the surface promise something of them.
     fn weigh<E: Unrender<Scratch = S>>(
         &mut self,
         live: &LiveMesh,
@@ -155,6 +155,9 @@ impl<S> Search<S> {
         let mut promising = places.map(|to| {
             let to = self.prepare(live, to?, limits.rules)?;
             let cost = expected.cost(to - origin) as i64;
+            if limits.falling && cost > 0 {
+                return None;
+            }
             let balance = limits.balance(live, &self.patch, (cost, sum), &mut before);
             Some((balance, to))
         });

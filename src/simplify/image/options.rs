@@ -164,9 +164,9 @@ pub struct ImageOptions {
     /// [`ImageDriven::with_swept_price`]: super::ImageDriven::with_swept_price
     #[serde(default)]
     pub swept_weight: f64,
-    /// Edges wait under what every so-manieth view says of them until they come to the front of the queue, and only there
-    /// are looked at in all views; 1 is the published method: all views at once. Even numbers see one half of mixed
-    /// shading.
+    /// Edges wait under what one of every so many views says of them until they come to the front of the queue, and only there
+    /// are looked at in all views; 1 is the published method: all views at once, as where fewer than five views would be
+    /// seen. Even numbers see one half of mixed shading.
     #[serde(default = "one")]
     pub glance: u32,
     /// What follows the last collapse.
