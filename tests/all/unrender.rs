@@ -324,7 +324,7 @@ proptest! {
             let pairs = y0.values().iter().zip(y.values());
             pairs.map(|(&y0, &y)| (i64::from(y0) - i64::from(y)).pow(2)).sum()
         }).collect();
-        let seen = |i: usize| every < 2 || i % every as usize == 0;
+        let seen = |i: usize| every < 2 || i.is_multiple_of(every as usize);
         let sum = |wanted: bool| -> i64 {
             let views = costs.iter().enumerate().filter(|(i, _)| seen(*i) == wanted);
             views.map(|(_, cost)| cost).sum()
