@@ -149,7 +149,7 @@ impl<M: Method> Engine<M> {
     /// Collapses until the target is reached, the method's limit would be exceeded, or nothing is legal. May be
     /// called again with a lower target: the queue continues where it was.
     ///
-    /// Time: one evaluation per edge at first, then per collapse a handful (lazy) to some forty (eager).
+    /// Time: one evaluation, or one glance, per edge at first, then per collapse a handful (lazy) to some forty (eager).
     ///
     /// # Errors
     /// [`crate::Error::Interrupted`].

@@ -108,7 +108,8 @@ impl Part {
         part
     }
 
-    /// Puts the vertices that move on the screens of the views in `lanes` (a bit for each), and finds the boxes there.
+    /// Puts the vertices that move on the screens of the views in `lanes` (a bit for each), and finds the boxes; those of
+    /// other views mean nothing.
     fn begin(
         &self,
         change: &Change<'_>,

@@ -413,7 +413,7 @@ impl LayerView {
 }
 
 impl Look {
-    /// Makes room for a region, and forgets the last one.
+    /// Makes room for a region; the buffers still hold the last one.
     fn begin(&mut self, region: Region) {
         self.enter(region);
         let size = region.height() << self.shift;

@@ -3,7 +3,7 @@
 //! The image-driven method orders collapses and moves vertices by pictures of some size. Where those cannot resolve what
 //! a mesh still has (many triangles left on a smooth surface, differences below one level of luma), it fits their noise,
 //! and the memoryless method, which knows nothing of noise, looks better. So both results are compared in views that
-//! drove neither, [`HeldOut`], and the memoryless one is returned where images did not pay: with the very bits that its
+//! drove neither, [`HeldOut`], and the memoryless one is returned where images did not pay, or hardly: with the very bits that its
 //! own run has. To be sure of a case that is plainly better costs little: the memoryless method only continues from the
 //! mesh that images started from, which is as good as its own result within a few percent.
 

@@ -5,7 +5,8 @@
 //! vertex is placed by the memoryless method (section 4.1), whose own cost is the second key: hidden edges all cost 0,
 //! and it keeps hidden parts in shape. But for the paper's preset, volume that a collapse sweeps is charged for as well:
 //! see [`ImageDriven::with_swept_price`]. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
-//! the preset is the paper's; the pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
+//! the preset is the paper's, where also every evaluation is in all views (see [`ImageDriven::with_glance`]); the
+//! pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
 //! and flips, which the paper does not have, comes after the last collapse.
 
 mod change;
