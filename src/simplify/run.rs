@@ -6,8 +6,8 @@ use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
     fallback::Contest,
     image::{
-        self, Deviation, EngineName, HeldOut, ImageDriven, ImageOptions, Limits, PictureScratch,
-        Pictures, PolishCounters, Start,
+        self, EngineName, ImageDriven, ImageOptions, Limits, Original, PictureScratch, Pictures,
+        PolishCounters, Start,
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
@@ -24,8 +24,7 @@ use crate::{
         Tiling, thin,
     },
     mesh::Mesh,
-    metric::Sides,
-    raster::{BucketEngine, LayerEngine, Scene, Unrender},
+    raster::{BucketEngine, LayerEngine, Unrender},
     view::{ViewsName, frame_of},
     visibility::{self, Visibility},
 };
@@ -196,11 +195,22 @@ impl<'a> Run<'a> {
         tiling: Tiling,
         target: Target,
     ) -> Result<(End, M)> {
+        let before = self.tiles(&mut method, tiling, target)?;
+        self.phase(name, method, target, before)
+    }
+
+    /// Collapses tile by tile until the mesh is small enough for one queue; what a phase counts on from.
+    fn tiles<M: Divisible>(
+        &mut self,
+        method: &mut M,
+        tiling: Tiling,
+        target: Target,
+    ) -> Result<(usize, Counters)> {
         let triangles_in = self.live.triangle_count();
         let mut counters = Counters::default();
         thin(
             &mut self.live,
-            &mut method,
+            method,
             (self.options.rules, self.options.schedule),
             tiling,
             target,
@@ -208,7 +218,7 @@ impl<'a> Run<'a> {
             &mut self.recorder,
             self.progress,
         )?;
-        self.phase(name, method, target, (triangles_in, counters))
+        Ok((triangles_in, counters))
     }
 
     /// Collapses under one method until the target or its end; counts on from `before`.
@@ -241,50 +251,59 @@ impl<'a> Run<'a> {
             size: own.size.pixels(target.triangles).into(),
             ..own.clone()
         };
+        let limit = self.options.error_rms;
+        let (mesh, progress) = (self.mesh, self.progress);
         let frame = self.live.frame();
-        let original = self.mesh.enter_frame(frame);
-        let set = own.views(&original, frame, 0)?;
-        let scene = Scene::of(&original);
-        let mut start = own.start.triangles(target.triangles);
-        let method = loop {
-            if self.live.triangle_count() > start {
-                let method = Memoryless::new(&self.live, own.placement);
-                // A target above the start is reached before pictures take over.
-                let triangles = start.max(target.triangles);
-                let until = Target { triangles };
-                self.thinned("memoryless", method, Tiling::COARSE, until)?;
-            }
-            self.progress.step("draw", 0, set.views.len() as u64)?;
-            let limit = self.options.error_rms;
-            let method = ImageDriven::<E>::new(&scene, &self.live, &set, own.placement, limit);
-            // Where an error limits the run, pre-simplification must not use up more than half of it.
-            let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
-            if !too_far || self.phases.is_empty() {
-                break method;
-            }
-            *self = Self::new(self.mesh, &self.options, self.progress);
-            start = usize::MAX;
+        let draw = || {
+            let mesh = mesh.enter_frame(frame);
+            Original::draw(
+                mesh,
+                frame,
+                own,
+                own.is_contested(limit.is_none()),
+                progress,
+            )
         };
-        let start = if start == usize::MAX {
-            Start::Input
+        let start = own.start.triangles(target.triangles);
+        let mut original = if self.live.triangle_count() > start {
+            // A target above the start is reached before pictures take over.
+            let triangles = start.max(target.triangles);
+            let until = Target { triangles };
+            let mut method = Memoryless::new(&self.live, own.placement);
+            let before = self.tiles(&mut method, Tiling::COARSE, until)?;
+            // One queue keeps one core busy.
+            let queue = || self.phase("memoryless", method, until, before);
+            let (thinned, drawn) = rayon::join(queue, draw);
+            thinned?;
+            drawn?
         } else {
-            Start::Triangles(start as u64)
+            progress.step("draw", 0, 0)?;
+            draw()?
         };
+        let drive =
+            |live: &_| ImageDriven::<E>::new(original.reference(), live, own.placement, limit);
+        let mut method = drive(&self.live);
+        let mut start = Start::Triangles(start as u64);
+        // Where an error limits the run, pre-simplification must not use up more than half of it.
+        let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
+        if too_far && !self.phases.is_empty() {
+            *self = Self::new(mesh, &self.options, progress);
+            method = drive(&self.live);
+            start = Start::Input;
+        }
         self.options.method = MethodOptions::Image(ImageOptions {
             start,
             ..own.clone()
         });
-        if own.is_contested(self.options.error_rms.is_none()) {
+        if let Some(held_out) = original.take_held_out() {
             self.contest = Some(Contest {
-                held_out: HeldOut::new(&scene, &original, frame, own)?,
+                held_out,
                 start: self.live.to_mesh().map_err(Error::Internal)?,
             });
         }
-        let sides = Sides::new(&original);
-        let surface = sides.as_ref().map(Sides::surface);
-        let deviation = |live: &LiveMesh, weight| Deviation::new(surface?, live, weight);
         let sum = method.error().sum() as f64;
-        let price = deviation(&self.live, own.swept_weight).map_or(0.0, |d| d.price(sum));
+        let deviation = original.deviation(&self.live, own.swept_weight);
+        let price = deviation.map_or(0.0, |d| d.price(sum));
         let method = method.with_swept_price(price).with_glance(own.glance);
         let before = (self.live.triangle_count(), Counters::default());
         let (end, method) = self.phase("image", method, target, before)?;
@@ -294,12 +313,13 @@ impl<'a> Run<'a> {
             let turns =
                 self.options.error_rms.is_none() && !matches!(own.views, ViewsName::File(_));
             let mut fresh = |live: &LiveMesh, round: u32| {
-                let set = turns.then(|| own.views(&original, frame, round))?.ok()?;
-                Some(Pictures::<E>::new(&scene, live, &set))
+                let turned = turns.then(|| original.turned(own, round, progress));
+                let turned = turned.transpose()?;
+                Ok(turned.map(|reference| Pictures::<E>::new(&reference, live)))
             };
             // What collapses turned over, polishing only keeps from getting worse. Turning back looks at no picture.
             let turned = self.options.error_rms.is_none()
-                && sides.as_ref().is_some_and(|sides| {
+                && original.sides().is_some_and(|sides| {
                     let faces = (0..self.live.triangle_ids()).into_par_iter();
                     let corners = faces.filter_map(|t| self.live.points(t));
                     corners.any(|face| sides.is_flipped(face))
@@ -319,7 +339,7 @@ impl<'a> Run<'a> {
                     self.progress,
                 )?;
             }
-            let deviation = deviation(&self.live, own.polish.deviation_weight);
+            let deviation = original.deviation(&self.live, own.polish.deviation_weight);
             let counters;
             (pictures, counters) = image::polish(
                 &mut self.live,
@@ -329,7 +349,7 @@ impl<'a> Run<'a> {
                     rules: self.options.rules,
                     deviation: deviation.as_ref(),
                     falling: self.options.error_rms.is_some(),
-                    sides: sides.as_ref(),
+                    sides: original.sides(),
                 },
                 &mut fresh,
                 &mut self.recorder,

@@ -9,7 +9,7 @@ use lodmark::{
     mesh::{Mesh, generate},
     metric::{Proximity, closest_point},
     num::math,
-    raster::{LayerEngine, Scene},
+    raster::LayerEngine,
     simplify::{
         Amount, MethodOptions, Options,
         image::{Deviation, Limits, Pictures, Polish, polish},
@@ -19,7 +19,7 @@ use lodmark::{
 };
 
 use crate::{
-    image::{error, view_sets},
+    image::{error, reference, view_sets},
     polish::pushed,
 };
 
@@ -102,7 +102,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
         let mut distances = Vec::new();
         for (weight, falling) in [(0.0, false), (1.0, false), (20.0, false), (20.0, true)] {
             let mut live = LiveMesh::new(&worse, frame);
-            let pictures = Pictures::<LayerEngine>::new(&Scene::of(&original), &live, set);
+            let pictures = Pictures::<LayerEngine>::new(&reference(&original, set), &live);
             let bound = Deviation::new(&surface, &live, weight);
             let total = deviation(&all, &worse.enter_frame(frame));
             let mut judge = Judge {
@@ -131,7 +131,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
                 pictures,
                 options,
                 limits,
-                &mut |_, _| None,
+                &mut |_, _| Ok(None),
                 &mut judge,
                 &Silent,
             )

@@ -12,7 +12,7 @@ use lodmark::{
     raster::{self, BucketEngine, Scene},
     simplify::{
         self, Amount, MethodOptions, Options, Stop,
-        image::{ImageDriven, ImageOptions, Preset, Start},
+        image::{ImageDriven, ImageOptions, Preset, Reference, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -49,17 +49,17 @@ impl Method for Watched {
 }
 
 fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watched {
-    let inner = ImageDriven::new(
-        &Scene::of(original),
-        live,
-        set,
-        MemorylessOptions::default(),
-        None,
-    );
+    let reference = reference(original, set);
+    let inner = ImageDriven::new(&reference, live, MemorylessOptions::default(), None);
     Watched {
         inner: inner.with_swept_price(price),
         last: None,
     }
+}
+
+/// The pictures of `original`, in units of the frame of `set`.
+pub(crate) fn reference(original: &Mesh, set: &ViewSet) -> Reference {
+    Reference::draw(&Scene::of(original), set.clone(), &Silent).expect("not interrupted")
 }
 
 /// Sum of squared luma differences, by drawing everything.

@@ -10,7 +10,7 @@ use lodmark::{
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
     metric::closest_point,
     num::math,
-    raster::{BucketEngine, LayerEngine, Scene, Unrender},
+    raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{
         Amount, MethodOptions, Options, Outcome,
         image::{
@@ -25,7 +25,7 @@ use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::{
-    image::{error, meshes, view_sets},
+    image::{error, meshes, reference, view_sets},
     shapes,
 };
 
@@ -45,16 +45,15 @@ fn polished<E: Unrender>(
     observer: &mut dyn Observer,
 ) -> (LiveMesh, u64, Pictures<E>, PolishCounters) {
     let frame = frame_of(mesh);
-    let original = Scene::of(&mesh.enter_frame(frame));
     let mut live = LiveMesh::new(worse, frame);
-    let pictures = Pictures::<E>::new(&original, &live, set);
+    let pictures = Pictures::<E>::new(&reference(&mesh.enter_frame(frame), set), &live);
     let before = pictures.error().sum();
     let (pictures, counters) = polish(
         &mut live,
         pictures,
         options,
         Limits::default(),
-        &mut |_, _| None,
+        &mut |_, _| Ok(None),
         observer,
         &Silent,
     )
@@ -309,13 +308,13 @@ fn a_locked_vertex_stays_where_it_is() {
         live.set_locked(v, true);
     }
     let before = live.positions().to_vec();
-    let pictures = Pictures::<LayerEngine>::new(&Scene::of(&original), &live, &set);
+    let pictures = Pictures::<LayerEngine>::new(&reference(&original, &set), &live);
     let (_, counters) = polish(
         &mut live,
         pictures,
         THREE,
         Limits::default(),
-        &mut |_, _| None,
+        &mut |_, _| Ok(None),
         &mut (),
         &Silent,
     )

@@ -1,11 +1,9 @@
 //! Equation 8 of Lindstrom & Turk 2000 over all views, as an exact integer.
 
-use rayon::prelude::*;
-
+use super::Reference;
 use crate::{
     num::math::sqrt,
     raster::{self, Change, Glance, Model, Plane, Scene, Unrender},
-    view::ViewSet,
 };
 
 /// The pictures of the original, those of the current mesh, and the sum of their squared luma differences.
@@ -24,35 +22,31 @@ pub struct ImageError<E> {
 }
 
 impl<E: Unrender> ImageError<E> {
-    /// Draws `original` and `current` in the views of `set` and compares them.
+    /// Draws `current` in the views of the original's pictures and compares them.
     #[must_use]
-    pub fn new(original: &Scene, current: &Scene, set: &ViewSet) -> Self {
-        let reference: Vec<Plane<u16>> = set
-            .views
-            .par_iter()
-            .map(|view| raster::luma_sums(original, view, set))
-            .collect();
-        let engine = E::new(Model::new(current, set), set, reference.clone());
+    pub fn new(reference: &Reference, current: &Scene) -> Self {
+        let set = reference.set();
+        let engine = E::new(Model::new(current, set), set, reference.sums().to_vec());
         let mut error = Self {
             engine,
             sum: 0,
             pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
             samples: set.samples * set.samples,
         };
-        error.sum = error.sum_from_scratch(&reference, set.samples);
+        error.sum = error.sum_from_scratch(reference);
         error
     }
 
-    /// The sum of squared differences between the engine's pictures and the luma sums in `reference`.
-    fn sum_from_scratch(&self, reference: &[Plane<u16>], samples: u32) -> u64 {
+    /// The sum of squared differences between the engine's pictures and those of the original.
+    fn sum_from_scratch(&self, reference: &Reference) -> u64 {
         let view = |(i, y0): (usize, &Plane<u16>)| {
-            let sums = raster::sum_samples(&self.engine.luma(i), samples);
+            let sums = raster::sum_samples(&self.engine.luma(i), reference.set().samples);
             let pairs = y0.values().iter().zip(sums.values());
             pairs
                 .map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2))
                 .sum::<u64>()
         };
-        reference.iter().enumerate().map(view).sum()
+        reference.sums().iter().enumerate().map(view).sum()
     }
 
     /// Sum over views and pixels of the squared luma differences, in squared levels over `samples^4`.

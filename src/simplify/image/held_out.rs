@@ -6,14 +6,14 @@
 
 use rayon::prelude::*;
 
-use super::{ImageOptions, Size};
+use super::{ImageOptions, Reference, Size};
 use crate::{
-    Result,
+    Progress, Result,
     mesh::Mesh,
     metric::luma::{SquaredError, ViewErrors, squared_error},
     num::Frame,
     raster::{Plane, Scene, luma_sums},
-    view::{View, ViewSet, ViewsName},
+    view::{View, ViewsName},
 };
 
 /// Few, because every one is a picture of the original: 12 of them took 5 % of the time of the fastest run.
@@ -29,16 +29,21 @@ const ROUND: u32 = 1_000;
 #[derive(Debug)]
 pub struct HeldOut {
     frame: Frame,
-    set: ViewSet,
-    expected: Vec<Plane<u16>>,
+    reference: Reference,
 }
 
 impl HeldOut {
     /// Draws `original`, the scene of `mesh`; both are in units of `frame`. The size of `own` must have been resolved.
     ///
     /// # Errors
-    /// As [`ImageOptions::views`].
-    pub fn new(original: &Scene, mesh: &Mesh, frame: Frame, own: &ImageOptions) -> Result<Self> {
+    /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
+    pub fn new(
+        original: &Scene,
+        mesh: &Mesh,
+        frame: Frame,
+        own: &ImageOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         let side = own.size.pixels(1).saturating_mul(2);
         let own = ImageOptions {
             views: ViewsName::Spiral(VIEWS),
@@ -47,12 +52,8 @@ impl HeldOut {
             ..own.clone()
         };
         let set = own.views(mesh, frame, ROUND)?;
-        let views = set.views.par_iter();
-        Ok(Self {
-            frame,
-            expected: views.map(|v| luma_sums(original, v, &set)).collect(),
-            set,
-        })
+        let reference = Reference::draw(original, set, progress)?;
+        Ok(Self { frame, reference })
     }
 
     /// How far `result`, in file units, is from the original.
@@ -61,11 +62,12 @@ impl HeldOut {
     /// [`crate::Error::Unsupported`] for more pixels than sums have bits for; never for views that could be drawn.
     pub fn error(&self, result: &Mesh) -> Result<SquaredError> {
         let scene = Scene::of(&result.enter_frame(self.frame));
-        let samples = self.set.samples * self.set.samples;
+        let set = self.reference.set();
+        let samples = set.samples * set.samples;
         let error = |(view, expected): (&View, &Plane<u16>)| {
-            squared_error(expected, &luma_sums(&scene, view, &self.set), samples)
+            squared_error(expected, &luma_sums(&scene, view, set), samples)
         };
-        let views = self.set.views.par_iter().zip(&self.expected);
+        let views = set.views.par_iter().zip(self.reference.sums());
         let errors: Vec<Result<SquaredError>> = views.map(error).collect();
         Ok(ViewErrors::new(errors.into_iter().collect::<Result<_>>()?)?.total())
     }
@@ -97,14 +99,14 @@ mod tests {
                 shading,
                 ..own.clone()
             };
-            let held_out = HeldOut::new(&scene, &mesh, frame, &own).expect("views");
+            let held_out = HeldOut::new(&scene, &mesh, frame, &own, &crate::Silent).expect("views");
             let same = held_out.error(&original).expect("drawn");
             assert!(same.is_zero(), "nothing differs from itself");
             let error = held_out.error(&coarse).expect("drawn");
             (held_out, error)
         });
         let candidate = Scene::of(&coarse.enter_frame(frame));
-        let set = &found[0].0.set;
+        let set = found[0].0.reference.set();
         assert_eq!((set.width, set.samples), (192, 2));
         let judged = appearance(&scene, &[candidate], set, &crate::Silent).expect("drawn");
         assert_eq!(found[0].1, judged[0].flat.total());

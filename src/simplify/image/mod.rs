@@ -15,25 +15,28 @@ mod deviation;
 mod held_out;
 mod moves;
 mod options;
+mod original;
 mod pictures;
 mod polish;
 mod preset;
+mod reference;
 
 pub use change::ImageChange;
 pub use cost::ImageError;
 pub use deviation::Deviation;
 pub use held_out::HeldOut;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
+pub use original::Original;
 pub use pictures::{PictureScratch, Pictures};
 pub use polish::{Limits, Polish, PolishCounters, polish};
 pub use preset::Preset;
+pub use reference::Reference;
 
 use super::memoryless::{self, MemorylessOptions};
 use crate::{
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     num::math::sqrt,
-    raster::{Glance, Scene, Unrender},
-    view::ViewSet,
+    raster::{Glance, Unrender},
 };
 
 /// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
@@ -67,17 +70,15 @@ pub struct ImageScratch<S> {
 }
 
 impl<E: Unrender> ImageDriven<E> {
-    /// Prepares the pictures of `live` in the views of `set`, to be compared with those of `original` (in the same
-    /// frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
+    /// Prepares the pictures of `live` in the views of the original's pictures (in the same frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
     pub fn new(
-        original: &Scene,
+        reference: &Reference,
         live: &LiveMesh,
-        set: &ViewSet,
         placement: MemorylessOptions,
         rms_limit: Option<f64>,
     ) -> Self {
-        let pictures = Pictures::new(original, live, set);
+        let pictures = Pictures::new(reference, live);
         Self {
             limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
             scratch: pictures.lone_scratch(),
@@ -85,7 +86,7 @@ impl<E: Unrender> ImageDriven<E> {
             placement,
             swept_price: 0.0,
             glance: 1,
-            views: set.views.len(),
+            views: reference.set().views.len(),
         }
     }
 

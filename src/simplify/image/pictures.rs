@@ -1,13 +1,13 @@
 //! The pictures that drive a run, and what a patch of the mesh does to them.
 
 use super::{
-    ImageError,
+    ImageError, Reference,
     change::{ImageChange, Slots},
 };
 use crate::{
     collapse::{LiveMesh, Patch},
-    raster::{Glance, Scene, Unrender},
-    view::{Interpolation, ViewSet},
+    raster::{Glance, Unrender},
+    view::Interpolation,
 };
 
 /// Pictures of a mesh as it is, and how far they are from those of the original.
@@ -26,13 +26,13 @@ pub struct PictureScratch<S> {
 }
 
 impl<E: Unrender> Pictures<E> {
-    /// Draws `live` in the views of `set`, to be compared with `original` (in the same frame).
+    /// Draws `live` in the views of the original's pictures (in the same frame), to be compared with them.
     #[must_use]
-    pub fn new(original: &Scene, live: &LiveMesh, set: &ViewSet) -> Self {
+    pub fn new(reference: &Reference, live: &LiveMesh) -> Self {
         let (slots, scene) = Slots::of(live);
-        let mut views = set.views.iter();
+        let mut views = reference.set().views.iter();
         Self {
-            error: ImageError::new(original, &scene, set),
+            error: ImageError::new(reference, &scene),
             slots,
             gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
         }

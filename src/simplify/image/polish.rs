@@ -129,13 +129,13 @@ struct Stand {
 /// (1, 2, ...), or none where the cameras are to stay.
 ///
 /// # Errors
-/// [`crate::Error::Interrupted`]; the mesh is then somewhere in between.
+/// [`crate::Error::Interrupted`], and what `fresh` fails with; the mesh is then somewhere in between.
 pub fn polish<E: Unrender>(
     live: &mut LiveMesh,
     pictures: Pictures<E>,
     options: Polish,
     limits: Limits<'_>,
-    fresh: &mut dyn FnMut(&LiveMesh, u32) -> Option<Pictures<E>>,
+    fresh: &mut dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures<E>>>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
 ) -> Result<(Pictures<E>, PolishCounters)> {
@@ -164,7 +164,7 @@ pub fn polish<E: Unrender>(
     for sweep in 0..options.sweeps {
         if sweep > 0
             && every(options.cameras_every, sweep)
-            && let Some(pictures) = fresh(polisher.live, sweep / options.cameras_every)
+            && let Some(pictures) = fresh(polisher.live, sweep / options.cameras_every)?
         {
             let now = polisher.pictures.error().rms();
             polisher.counters.cameras.push([rms, now]);

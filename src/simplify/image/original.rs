@@ -1,0 +1,82 @@
+//! What a run that is driven by pictures asks of the original.
+
+use super::{Deviation, HeldOut, ImageOptions, Reference};
+use crate::{
+    Progress, Result, collapse::LiveMesh, mesh::Mesh, metric::Sides, num::Frame, raster::Scene,
+};
+
+/// The original in the driving views, in views that drive nothing, and as a surface. It depends on no collapse: it is
+/// made beside the part of the run that needs no pictures.
+#[derive(Debug)]
+pub struct Original {
+    mesh: Mesh,
+    frame: Frame,
+    scene: Scene,
+    reference: Reference,
+    held_out: Option<HeldOut>,
+    sides: Option<Sides>,
+}
+
+impl Original {
+    /// Draws `mesh`, in units of `frame`; the size of `own` must have been resolved. In other views as well where the
+    /// result is to be `contested`. O(n log n + pixels).
+    ///
+    /// # Errors
+    /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
+    pub fn draw(
+        mesh: Mesh,
+        frame: Frame,
+        own: &ImageOptions,
+        contested: bool,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let scene = Scene::of(&mesh);
+        let set = own.views(&mesh, frame, 0)?;
+        let held_out = || HeldOut::new(&scene, &mesh, frame, own, progress);
+        Ok(Self {
+            reference: Reference::draw(&scene, set, progress)?,
+            held_out: contested.then(held_out).transpose()?,
+            sides: Sides::new(&mesh),
+            mesh,
+            frame,
+            scene,
+        })
+    }
+
+    /// Its pictures in the driving views.
+    #[must_use]
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// Its pictures with cameras turned for a later round.
+    ///
+    /// # Errors
+    /// As [`Original::draw`].
+    pub fn turned(
+        &self,
+        own: &ImageOptions,
+        round: u32,
+        progress: &dyn Progress,
+    ) -> Result<Reference> {
+        let set = own.views(&self.mesh, self.frame, round)?;
+        Reference::draw(&self.scene, set, progress)
+    }
+
+    /// Its pictures in views that drive nothing, once: nothing else of the run looks at them.
+    pub fn take_held_out(&mut self) -> Option<HeldOut> {
+        self.held_out.take()
+    }
+
+    /// On which side of it a face is; `None` where it has no triangle with an area.
+    #[must_use]
+    pub fn sides(&self) -> Option<&Sides> {
+        self.sides.as_ref()
+    }
+
+    /// How far `live` is from its surface, as a share of the image error: see [`Deviation::new`].
+    #[must_use]
+    pub fn deviation(&self, live: &LiveMesh, weight: f64) -> Option<Deviation<'_>> {
+        Deviation::new(self.sides()?.surface(), live, weight)
+    }
+}

@@ -1,0 +1,49 @@
+//! What pictures of a mesh are held against.
+
+use rayon::prelude::*;
+
+use crate::{
+    Error, Progress, Result,
+    raster::{Plane, Scene, luma_sums},
+    view::ViewSet,
+};
+
+/// Pictures of the original in a set of views.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    set: ViewSet,
+    sums: Vec<Plane<u16>>,
+}
+
+impl Reference {
+    /// Draws `original` in the views of `set`, in parallel. O(triangles + pixels) for every view.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn draw(original: &Scene, set: ViewSet, progress: &dyn Progress) -> Result<Self> {
+        let views = set.views.par_iter();
+        let sums = views.map(|view| {
+            // Other work reports meanwhile.
+            if progress.interrupted() {
+                return Err(Error::Interrupted);
+            }
+            Ok(luma_sums(original, view, &set))
+        });
+        Ok(Self {
+            sums: sums.collect::<Result<_>>()?,
+            set,
+        })
+    }
+
+    /// The views, and what is common to their pictures.
+    #[must_use]
+    pub fn set(&self) -> &ViewSet {
+        &self.set
+    }
+
+    /// The sum of the lumas of the samples in every pixel, for every view.
+    #[must_use]
+    pub fn sums(&self) -> &[Plane<u16>] {
+        &self.sums
+    }
+}
