@@ -3,7 +3,8 @@
 //! Nothing is drawn again but the triangles of the change. A view is left out, exactly, where none of the triangles that
 //! go is seen and those that come are behind everything seen in the tiles of their box. Views are kept in parts of at
 //! most 64; the vertices of a part lie together for all of its views, and a bit for every view says where a triangle is
-//! seen.
+//! seen. Views are dealt out to the parts one by one: in a set, neighbours see much the same, and every part should have
+//! as much to do for a change as any other.
 
 use rayon::prelude::*;
 
@@ -32,9 +33,8 @@ const WORTH_SHARING: usize = 4_000;
 #[derive(Clone, Debug)]
 pub struct LayerEngine {
     model: Model,
+    /// View `i` of `n` parts is view `i / n` of part `i % n`.
     parts: Vec<Part>,
-    /// Views in a part; the last one may have fewer.
-    per_part: usize,
     size: [u32; 2],
     /// A view needs the geometry of faces.
     flat: bool,
@@ -247,7 +247,8 @@ fn each(mut lanes: u64) -> impl Iterator<Item = usize> {
 
 impl LayerEngine {
     fn place(&self, view: usize) -> &LayerView {
-        &self.parts[view / self.per_part].views[view % self.per_part]
+        let parts = self.parts.len();
+        &self.parts[view % parts].views[view / parts]
     }
 
     fn plane<T: Copy>(&self, values: Vec<T>) -> Plane<T> {
@@ -262,11 +263,10 @@ impl Unrender for LayerEngine {
         let colored = !model.colors.is_empty();
         let count = set.views.len();
         let threads = rayon::current_num_threads().min(PARTS);
-        let parts = threads
+        let part_count = threads
             .min(count / FEWEST_VIEWS)
             .max(count.div_ceil(MOST_VIEWS))
             .max(1);
-        let per_part = count.div_ceil(parts).max(1);
         let views: Vec<LayerView> = set
             .views
             .par_iter()
@@ -274,20 +274,17 @@ impl Unrender for LayerEngine {
             .map(|(view, y0)| LayerView::new(&model, view, set, y0.values(), colored))
             .collect();
         let flat = colored || views.iter().any(|view| !view.is_gouraud());
-        let mut views = views.into_iter();
-        let chunks: Vec<Vec<LayerView>> = std::iter::from_fn(|| {
-            let chunk: Vec<LayerView> = views.by_ref().take(per_part).collect();
-            (!chunk.is_empty()).then_some(chunk)
-        })
-        .collect();
-        let parts = chunks
+        let mut dealt: Vec<Vec<LayerView>> = (0..part_count).map(|_| Vec::new()).collect();
+        for (i, view) in views.into_iter().enumerate() {
+            dealt[i % part_count].push(view);
+        }
+        let parts = dealt
             .into_par_iter()
-            .map(|chunk| Part::new(&model, chunk))
+            .map(|views| Part::new(&model, views))
             .collect();
         Self {
             model,
             parts,
-            per_part,
             size: [set.width * set.samples, set.height * set.samples],
             flat,
         }
@@ -325,7 +322,7 @@ impl Unrender for LayerEngine {
         let work = |(i, (part, scratch)): (usize, (&Part, &mut PartScratch))| {
             scratch.look.pixels_seen = 0;
             let lanes = each(all(part.views.len()));
-            let lanes = lanes.filter(|lane| glance.sees(i * self.per_part + lane));
+            let lanes = lanes.filter(|lane| glance.sees(lane * self.parts.len() + i));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
             part.evaluate(model, change, prepared, lanes, scratch)
         };
