@@ -26,9 +26,6 @@ const FEWEST_VIEWS: usize = 5;
 /// Most parts that the views are divided into for the sake of threads.
 const PARTS: usize = 4;
 
-/// Pixels of an evaluation from which handing half of the views to another thread pays.
-const WORTH_SHARING: usize = 4_000;
-
 /// Pictures of a mesh in all views, with all their layers.
 #[derive(Clone, Debug)]
 pub struct LayerEngine {
@@ -47,8 +44,6 @@ pub struct LayerScratch {
     parts: Vec<PartScratch>,
     /// Nothing else runs beside: parts may be given to other threads.
     lone: bool,
-    /// Pixels that the last evaluation went through.
-    pixels: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -305,7 +300,6 @@ impl Unrender for LayerEngine {
             prepared: Prepared::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
             lone: false,
-            pixels: 0,
         }
     }
 
@@ -320,21 +314,18 @@ impl Unrender for LayerEngine {
         scratch.prepared.fill(&self.model, change, self.flat);
         let (model, prepared) = (&self.model, &scratch.prepared);
         let work = |(i, (part, scratch)): (usize, (&Part, &mut PartScratch))| {
-            scratch.look.pixels_seen = 0;
             let lanes = each(all(part.views.len()));
             let lanes = lanes.filter(|lane| glance.sees(lane * self.parts.len() + i));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
             part.evaluate(model, change, prepared, lanes, scratch)
         };
-        let sum = if scratch.lone && scratch.pixels > WORTH_SHARING {
+        if scratch.lone && self.parts.len() > 1 {
             let pairs = self.parts.par_iter().zip(&mut scratch.parts);
             pairs.enumerate().map(work).sum()
         } else {
             let pairs = self.parts.iter().zip(&mut scratch.parts);
             pairs.enumerate().map(work).sum()
-        };
-        scratch.pixels = scratch.parts.iter().map(|part| part.look.pixels_seen).sum();
-        sum
+        }
     }
 
     fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {

@@ -44,8 +44,6 @@ pub(super) struct Look {
     /// After a commit: for every touched sample the triangle that it showed and the one it shows; ids above the last
     /// triangle are the background.
     pub(super) swaps: Vec<(u32, u32)>,
-    /// Pixels of all regions that were gone through; only ever counted up.
-    pub(super) pixels_seen: usize,
     pieces: Vec<Piece>,
     pub(super) covered: Covered,
     /// Columns of a row that show a triangle.
@@ -417,7 +415,6 @@ impl Look {
     fn begin(&mut self, region: Region) {
         self.enter(region);
         let size = region.height() << self.shift;
-        self.pixels_seen += size;
         if self.slots.len() < size + 1 {
             self.slots.resize(size + 1, 0);
             self.touched.resize(size + 1, 0);
