@@ -3,14 +3,12 @@
 //! Evaluations run in parallel in fixed batches whose results are put together by edge id; queue and commits are
 //! serial. The result does not depend on the number of threads.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
     Changes, Counters, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule,
-    Site,
+    evaluator::Evaluator,
     queue::{self, Evaluation, Front, Queue},
 };
 use crate::{Error, Progress, Result};
@@ -308,25 +306,25 @@ impl<M: Method> Engine<M> {
     /// Evaluates edges again, or glances at them, and re-keys them.
     fn refresh(&mut self, queue: &mut Queue, ids: &[u32], how: Evaluation) {
         self.count(ids.len(), how);
-        if ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1 {
-            let mut outcomes: Vec<_> = self.evaluate_shared(ids, how);
-            outcomes.sort_unstable_by_key(|(i, _)| *i);
-            for (i, outcome) in outcomes {
-                self.note(queue, ids[i], outcome, how);
-            }
-        } else if ids.len() <= self.method.evaluations_per_task() {
+        let per_task = self.method.evaluations_per_task();
+        let shared = ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1;
+        if !shared && ids.len() <= per_task {
             for &id in ids {
-                let by = (&self.method, how);
-                let buffers = (&mut self.ring, &mut self.scratch);
-                let outcome = evaluate(&self.live, by, self.rules, id, buffers);
+                let evaluator = Evaluator::new(&self.live, &self.method, self.rules, how);
+                let outcome = evaluator.one(id, &mut self.ring, &mut self.scratch);
                 self.gathered = Some(id);
                 self.note(queue, id, outcome, how);
             }
+            return;
+        }
+        let evaluator = Evaluator::new(&self.live, &self.method, self.rules, how);
+        let outcomes = if shared {
+            evaluator.shared(ids, &mut self.pool)
         } else {
-            let outcomes = self.evaluate_all(ids, how, self.method.evaluations_per_task());
-            for (&id, outcome) in ids.iter().zip(outcomes) {
-                self.note(queue, id, outcome, how);
-            }
+            evaluator.all(ids, per_task)
+        };
+        for (&id, outcome) in ids.iter().zip(outcomes) {
+            self.note(queue, id, outcome, how);
         }
     }
 
@@ -335,33 +333,6 @@ impl<M: Method> Engine<M> {
             Evaluation::Whole => self.counters.evaluations += edges as u64,
             Evaluation::Glance => self.counters.estimates += edges as u64,
         }
-    }
-
-    /// Evaluates a small batch on all threads: each takes the next edge when it is done with one. The outcomes, with
-    /// the index of their edge, are in no order.
-    fn evaluate_shared(
-        &mut self,
-        ids: &[u32],
-        how: Evaluation,
-    ) -> Vec<(usize, Result<Proposal, Refusal>)> {
-        let (live, method, rules) = (&self.live, &self.method, self.rules);
-        let threads = rayon::current_num_threads().min(ids.len());
-        while self.pool.len() < threads {
-            self.pool.push((Ring::default(), method.scratch()));
-        }
-        let next = AtomicUsize::new(0);
-        let outcomes = self.pool[..threads].par_iter_mut().map(|(ring, scratch)| {
-            let mut outcomes = Vec::new();
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                let Some(&id) = ids.get(i) else {
-                    return outcomes;
-                };
-                outcomes.push((i, evaluate(live, (method, how), rules, id, (ring, scratch))));
-            }
-        });
-        let outcomes: Vec<Vec<_>> = outcomes.collect();
-        outcomes.into_iter().flatten().collect()
     }
 
     fn note(
@@ -389,7 +360,8 @@ impl<M: Method> Engine<M> {
         for (i, block) in ids.chunks(per_task * TASKS).enumerate() {
             let done = i * per_task * TASKS;
             progress.step("evaluate", done as u64, ids.len() as u64)?;
-            for (&id, outcome) in block.iter().zip(self.evaluate_all(block, how, per_task)) {
+            let outcomes = self.evaluator(how).all(block, per_task);
+            for (&id, outcome) in block.iter().zip(outcomes) {
                 match outcome {
                     Ok(proposal) => evaluated.push((id, proposal)),
                     Err(refusal) => self.counters.refusals.add(refusal),
@@ -430,34 +402,15 @@ impl<M: Method> Engine<M> {
             .collect()
     }
 
-    /// Evaluates edges in parallel; the outcomes are in the order of `ids`.
-    fn evaluate_all(
-        &self,
-        ids: &[u32],
-        how: Evaluation,
-        per_task: usize,
-    ) -> Vec<Result<Proposal, Refusal>>
-    where
-        M: Sync,
-    {
-        let (live, method, rules) = (&self.live, &self.method, self.rules);
-        let chunks: Vec<Vec<_>> = ids
-            .par_chunks(per_task.max(1))
-            .map_init(
-                || (Ring::default(), method.scratch()),
-                |(ring, scratch), chunk| {
-                    let each = chunk.iter();
-                    each.map(|&id| evaluate(live, (method, how), rules, id, (ring, scratch)))
-                        .collect()
-                },
-            )
-            .collect();
-        chunks.into_iter().flatten().collect()
+    /// What evaluates edges of the mesh as it is.
+    fn evaluator(&self, how: Evaluation) -> Evaluator<'_, M> {
+        Evaluator::new(&self.live, &self.method, self.rules, how)
     }
 
     fn blocked(&self) -> Refusals {
         let mut blocked = Refusals::default();
-        for outcome in self.evaluate_all(&self.live_edges(), Evaluation::Whole, CHUNK) {
+        let ids = self.live_edges();
+        for outcome in self.evaluator(Evaluation::Whole).all(&ids, CHUNK) {
             if let Err(refusal) = outcome {
                 blocked.add(refusal);
             }
@@ -470,11 +423,8 @@ impl<M: Method> Engine<M> {
             return;
         }
         let ids = self.live_edges();
-        let outcomes = self.evaluate_all(
-            &ids,
-            Evaluation::Whole,
-            CHUNK.min(self.method.evaluations_per_task()),
-        );
+        let per_task = CHUNK.min(self.method.evaluations_per_task());
+        let outcomes = self.evaluator(Evaluation::Whole).all(&ids, per_task);
         let keys: Vec<_> = ids
             .iter()
             .zip(outcomes)
@@ -484,31 +434,5 @@ impl<M: Method> Engine<M> {
             let cheaper = keys.iter().filter(|(_, key)| key < own).count();
             self.counters.ranks.push(cheaper as f64 / keys.len() as f64);
         }
-    }
-}
-
-/// True where more than `limit` faces touch an edge; those at both ends count twice.
-fn crowded(live: &LiveMesh, id: u32, limit: usize) -> bool {
-    live.edge(id)
-        .is_some_and(|[u, w]| live.valence(u) + live.valence(w) > limit)
-}
-
-fn evaluate<M: Method>(
-    live: &LiveMesh,
-    (method, how): (&M, Evaluation),
-    rules: Rules,
-    id: u32,
-    (ring, scratch): (&mut Ring, &mut M::Scratch),
-) -> Result<Proposal, Refusal> {
-    if crowded(live, id, method.ring_limit()) {
-        return Err(Refusal::Valence);
-    }
-    if !ring.gather(live, id) {
-        return Err(Refusal::Unplaced);
-    }
-    let site = Site::new(live, ring, rules)?;
-    match how {
-        Evaluation::Whole => method.propose(&site, scratch),
-        Evaluation::Glance => method.glance(&site, scratch),
     }
 }

@@ -8,6 +8,7 @@
 mod compact;
 mod counters;
 mod engine;
+mod evaluator;
 mod flip;
 mod fold;
 mod heap;
