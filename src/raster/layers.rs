@@ -3,8 +3,8 @@
 //! Nothing is drawn again but the triangles of the change. A view is left out, exactly, where none of the triangles that
 //! go is seen and those that come are behind everything seen in the tiles of their box. Views are kept in parts of at
 //! most 64; the vertices of a part lie together for all of its views, and a bit for every view says where a triangle is
-//! seen. Views are dealt out to the parts one by one: in a set, neighbours see much the same, and every part should have
-//! as much to do for a change as any other.
+//! seen. Views are dealt out to the parts one by one, those with Gouraud shading after the others: in a set, neighbours
+//! see much the same, and every part should have as much to do for a change as any other.
 
 use rayon::prelude::*;
 
@@ -30,7 +30,6 @@ const PARTS: usize = 4;
 #[derive(Clone, Debug)]
 pub struct LayerEngine {
     model: Model,
-    /// View `i` of `n` parts is view `i / n` of part `i % n`.
     parts: Vec<Part>,
     size: [u32; 2],
     /// A view needs the geometry of faces.
@@ -58,6 +57,8 @@ struct PartScratch {
 #[derive(Clone, Debug)]
 struct Part {
     views: Vec<LayerView>,
+    /// Where they are in the set.
+    indices: Vec<usize>,
     lanes: Lanes,
     /// Gouraud shading: intensities by vertex and view.
     intensities: Vec<f64>,
@@ -68,7 +69,8 @@ struct Part {
 }
 
 impl Part {
-    fn new(model: &Model, views: Vec<LayerView>) -> Self {
+    fn new(model: &Model, views: Vec<(usize, LayerView)>) -> Self {
+        let (indices, views): (Vec<_>, Vec<_>) = views.into_iter().unzip();
         let count = views.len();
         let shaded = views.iter().any(LayerView::is_shaded);
         let mut part = Self {
@@ -77,6 +79,7 @@ impl Part {
             counts: vec![0; model.corners.len() * count],
             seen: vec![0; model.corners.len()],
             views,
+            indices,
         };
         for (v, &position) in model.positions.iter().enumerate() {
             part.lanes
@@ -241,9 +244,13 @@ fn each(mut lanes: u64) -> impl Iterator<Item = usize> {
 }
 
 impl LayerEngine {
-    fn place(&self, view: usize) -> &LayerView {
-        let parts = self.parts.len();
-        &self.parts[view % parts].views[view / parts]
+    fn view(&self, index: usize) -> &LayerView {
+        let mut parts = self.parts.iter();
+        let view = parts.find_map(|part| {
+            let lane = part.indices.iter().position(|&i| i == index)?;
+            Some(&part.views[lane])
+        });
+        view.expect("a view of the set")
     }
 
     fn plane<T: Copy>(&self, values: Vec<T>) -> Plane<T> {
@@ -269,9 +276,11 @@ impl Unrender for LayerEngine {
             .map(|(view, y0)| LayerView::new(&model, view, set, y0.values(), colored))
             .collect();
         let flat = colored || views.iter().any(|view| !view.is_gouraud());
-        let mut dealt: Vec<Vec<LayerView>> = (0..part_count).map(|_| Vec::new()).collect();
-        for (i, view) in views.into_iter().enumerate() {
-            dealt[i % part_count].push(view);
+        let mut views: Vec<(usize, LayerView)> = views.into_iter().enumerate().collect();
+        views.sort_by_key(|(_, view)| view.is_gouraud());
+        let mut dealt: Vec<Vec<_>> = (0..part_count).map(|_| Vec::new()).collect();
+        for (turn, view) in views.into_iter().enumerate() {
+            dealt[turn % part_count].push(view);
         }
         let parts = dealt
             .into_par_iter()
@@ -313,18 +322,18 @@ impl Unrender for LayerEngine {
     fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut LayerScratch) -> i64 {
         scratch.prepared.fill(&self.model, change, self.flat);
         let (model, prepared) = (&self.model, &scratch.prepared);
-        let work = |(i, (part, scratch)): (usize, (&Part, &mut PartScratch))| {
+        let work = |(part, scratch): (&Part, &mut PartScratch)| {
             let lanes = each(all(part.views.len()));
-            let lanes = lanes.filter(|lane| glance.sees(lane * self.parts.len() + i));
+            let lanes = lanes.filter(|lane| glance.sees(part.indices[*lane]));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
             part.evaluate(model, change, prepared, lanes, scratch)
         };
         if scratch.lone && self.parts.len() > 1 {
             let pairs = self.parts.par_iter().zip(&mut scratch.parts);
-            pairs.enumerate().map(work).sum()
+            pairs.map(work).sum()
         } else {
             let pairs = self.parts.iter().zip(&mut scratch.parts);
-            pairs.enumerate().map(work).sum()
+            pairs.map(work).sum()
         }
     }
 
@@ -346,10 +355,10 @@ impl Unrender for LayerEngine {
     }
 
     fn luma(&self, view: usize) -> Plane<u8> {
-        self.plane(self.place(view).luma())
+        self.plane(self.view(view).luma())
     }
 
     fn keys(&self, view: usize) -> Plane<u64> {
-        self.plane(self.place(view).keys())
+        self.plane(self.view(view).keys())
     }
 }
