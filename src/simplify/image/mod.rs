@@ -28,7 +28,7 @@ pub use held_out::HeldOut;
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
 pub use original::Original;
 pub use pictures::{PictureScratch, Pictures};
-pub use polish::{Limits, Polish, PolishCounters, polish};
+pub use polish::{Limits, Polish, PolishCounters, Turn, polish};
 pub use preset::Preset;
 pub use reference::Reference;
 

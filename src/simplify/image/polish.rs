@@ -125,8 +125,10 @@ struct Stand {
     changed: u32,
 }
 
-/// Polishes `live`, which `pictures` show. `fresh` makes pictures of the mesh with cameras turned for the given round
-/// (1, 2, ...), or none where the cameras are to stay.
+/// Makes pictures of a mesh with cameras turned for a round (1, 2, ...); none where the cameras are to stay.
+pub type Turn<'a, E> = dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures<E>>> + 'a;
+
+/// Polishes `live`, which `pictures` show, with cameras that `fresh` turns.
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`], and what `fresh` fails with; the mesh is then somewhere in between.
@@ -135,7 +137,7 @@ pub fn polish<E: Unrender>(
     pictures: Pictures<E>,
     options: Polish,
     limits: Limits<'_>,
-    fresh: &mut dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures<E>>>,
+    fresh: &mut Turn<'_, E>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
 ) -> Result<(Pictures<E>, PolishCounters)> {
