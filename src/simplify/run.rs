@@ -254,11 +254,14 @@ impl<'a> Run<'a> {
         let limit = self.options.error_rms;
         let (mesh, progress) = (self.mesh, self.progress);
         let frame = self.live.frame();
+        let framed = mesh.enter_frame(frame);
+        // Views that cannot be used are told before any work.
+        let set = own.views(&framed, frame, 0)?;
         let draw = || {
-            let mesh = mesh.enter_frame(frame);
             Original::draw(
-                mesh,
+                framed,
                 frame,
+                set,
                 own,
                 own.is_contested(limit.is_none()),
                 progress,

@@ -70,7 +70,8 @@ pub struct ImageScratch<S> {
 }
 
 impl<E: Unrender> ImageDriven<E> {
-    /// Prepares the pictures of `live` in the views of the original's pictures (in the same frame). `rms_limit` ends the run before the root mean square of the luma differences over all views exceeds it.
+    /// Prepares the pictures of `live` in the views of the original's pictures (in the same frame). `rms_limit` ends the
+    /// run before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
     pub fn new(
         reference: &Reference,

@@ -3,6 +3,7 @@
 use super::{Deviation, HeldOut, ImageOptions, Reference};
 use crate::{
     Progress, Result, collapse::LiveMesh, mesh::Mesh, metric::Sides, num::Frame, raster::Scene,
+    view::ViewSet,
 };
 
 /// The original in the driving views, in views that drive nothing, and as a surface. It depends on no collapse: it is
@@ -18,20 +19,20 @@ pub struct Original {
 }
 
 impl Original {
-    /// Draws `mesh`, in units of `frame`; the size of `own` must have been resolved. In other views as well where the
-    /// result is to be `contested`. O(n log n + pixels).
+    /// Draws `mesh`, in units of `frame`, in the views of `set`; the size of `own` must have been resolved. In other views
+    /// as well where the result is to be `contested`. O(n log n + pixels).
     ///
     /// # Errors
     /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
     pub fn draw(
         mesh: Mesh,
         frame: Frame,
+        set: ViewSet,
         own: &ImageOptions,
         contested: bool,
         progress: &dyn Progress,
     ) -> Result<Self> {
         let scene = Scene::of(&mesh);
-        let set = own.views(&mesh, frame, 0)?;
         let held_out = || HeldOut::new(&scene, &mesh, frame, own, progress);
         Ok(Self {
             reference: Reference::draw(&scene, set, progress)?,
