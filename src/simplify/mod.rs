@@ -5,23 +5,21 @@
 //! methods use as well: [`mod@image`] the first, [`visibility`] the second.
 
 pub mod billboards;
-mod fallback;
-mod fan;
 pub mod image;
 pub mod memoryless;
 mod options;
 mod outcome;
 pub mod quadric;
+mod repair_folds;
 mod replacement;
 mod run;
 pub mod tolerance;
-mod unfold;
 pub mod view_bounded;
 pub mod visibility;
 
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
 pub use crate::collapse::{History, Replay};
-pub use fallback::Comparison;
+pub use image::Comparison;
 pub use options::{Amount, MethodOptions, Options};
 pub use outcome::{Outcome, Phase, Stop};
 pub use replacement::{NearestTriangle, originals};

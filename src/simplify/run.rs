@@ -4,15 +4,14 @@ use rayon::prelude::*;
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
-    fallback::Contest,
     image::{
-        self, EngineName, ImageDriven, ImageOptions, Limits, Original, PictureScratch, Pictures,
-        PolishCounters, Start,
+        self, Contest, EngineName, ImageDriven, ImageOptions, Limits, Original, PictureScratch,
+        Pictures, PolishCounters, Start,
     },
     memoryless::Memoryless,
     quadric::QuadricMethod,
+    repair_folds::unfold,
     tolerance::{Guarantee, ToleranceMethod, ToleranceOptions},
-    unfold::unfold,
     view_bounded::{ViewBounded, ViewBoundedOptions},
     visibility::{VisibilityMethod, VisibilityOptions},
 };

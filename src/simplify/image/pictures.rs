@@ -2,7 +2,7 @@
 
 use super::{
     ImageError, Reference,
-    change::{ImageChange, Slots},
+    scene_edit::{ImageChange, Slots},
 };
 use crate::{
     collapse::{LiveMesh, Patch},

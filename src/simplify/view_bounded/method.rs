@@ -12,7 +12,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::memoryless::{self, Memoryless, MemorylessOptions, Objective};
+use super::super::memoryless::{self, Memoryless, MemorylessOptions, Objective};
 use crate::{
     Error, Progress, Result,
     bound::{
@@ -45,7 +45,7 @@ impl ViewBoundedOptions {
         }
     }
 
-    pub(super) fn check(&self) -> Result<()> {
+    pub(in super::super) fn check(&self) -> Result<()> {
         if !(0.0..90.0).contains(&self.error_deg) {
             return Err(Error::Usage(format!(
                 "the angle is {} degrees; expected at least 0 and less than 90",
@@ -127,7 +127,7 @@ impl ViewBounded {
     ///
     /// # Errors
     /// [`Error::Internal`] where a collapse was committed that was never allowed.
-    pub(super) fn into_correspondence(self, live: &LiveMesh) -> Result<Correspondence> {
+    pub(in super::super) fn into_correspondence(self, live: &LiveMesh) -> Result<Correspondence> {
         if self.lost {
             return Err(Error::Internal(
                 "a collapse was committed that has no map".into(),

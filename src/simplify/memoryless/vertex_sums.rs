@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::memoryless::{Gradient, MemorylessOptions, Objective};
+use super::method::{Gradient, MemorylessOptions, Objective};
 use crate::collapse::{LiveMesh, Patch, legality::RING_LIMIT};
 
 /// Most faces of a patch that are looked through for their vertices; beyond that those are sorted.

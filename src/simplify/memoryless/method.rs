@@ -12,7 +12,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::fan::Fans;
+use super::vertex_sums::Fans;
 use crate::{
     collapse::{
         Admitted, BoundaryEdge, Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site,
@@ -311,7 +311,7 @@ impl Objective {
     }
 
     /// [`Objective::optimum`] as its matrix and vector, relative to the midpoint of the edge.
-    pub(super) fn quadratic(&self) -> ([f64; 6], DVec3) {
+    pub(in super::super) fn quadratic(&self) -> ([f64; 6], DVec3) {
         let gradient = self.optimum();
         (gradient.h, gradient.c)
     }

@@ -1,6 +1,6 @@
 //! Visibility-guided simplification: Zhang & Turk 2002, section 5.
 //!
-//! A vertex carries two quadrics. `Q`, that of [`quadric`](super::quadric), decides where the new vertex lies. `Q_v`,
+//! A vertex carries two quadrics. `Q`, that of [`quadric`](super::super::quadric), decides where the new vertex lies. `Q_v`,
 //! in which the planes of a face and of its boundary edges count by the square of its visibility (equations 5.8 to
 //! 5.10), decides which edge is next; it never places, because it is singular where nothing is seen. Both are sums
 //! over the ends of an edge. Deviation: the cost is `Q_v + 1e-6 Q`. Where nothing is seen all `Q_v` are 0, and the
@@ -10,7 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::quadric::{QuadricMethod, QuadricOptions};
+use super::super::quadric::{QuadricMethod, QuadricOptions};
 use crate::{
     Error, Result,
     collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},

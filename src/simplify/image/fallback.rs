@@ -9,7 +9,10 @@
 
 use serde::Serialize;
 
-use super::{Amount, MethodOptions, Options, Outcome, image::HeldOut};
+use super::{
+    super::{Amount, MethodOptions, Options, Outcome},
+    HeldOut,
+};
 use crate::{Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
 
 /// Images pay where they leave less than this share of the RMS: views differ by about as much (0.974 in these views was
@@ -40,15 +43,15 @@ pub struct Comparison {
 
 /// What the comparison needs of an image-driven run.
 #[derive(Debug)]
-pub(super) struct Contest {
-    pub(super) held_out: HeldOut,
+pub(in super::super) struct Contest {
+    pub(in super::super) held_out: HeldOut,
     /// The mesh that images started from, in file units.
-    pub(super) start: Mesh,
+    pub(in super::super) start: Mesh,
 }
 
 impl Contest {
     /// The better one of `images`, a result for `mesh`, and what `run` makes of a mesh by the memoryless method.
-    pub(super) fn decide(
+    pub(in super::super) fn decide(
         &self,
         mesh: &Mesh,
         images: Outcome,

@@ -1,0 +1,171 @@
+//! The method: edges in the order of what their collapse does to the pictures.
+
+use super::{
+    super::memoryless::{self, MemorylessOptions},
+    ImageError, PictureScratch, Pictures, Reference,
+};
+use crate::{
+    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    num::math::sqrt,
+    raster::{Glance, Unrender},
+};
+
+/// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
+/// instead 0.3 % more error and 0.5 % more distance, for 10 % less time in this part of a run.
+const EARLY: f64 = 0.7;
+
+/// Fewest views that tell a cost from a glance.
+const LEAST_SEEN: usize = 5;
+
+/// The method: pictures of the mesh as it is, and how far they are from those of the original.
+#[derive(Debug)]
+pub struct ImageDriven<E: Unrender> {
+    pictures: Pictures<E>,
+    placement: MemorylessOptions,
+    /// Largest sum of squared differences that a collapse may lead to.
+    limit: Option<f64>,
+    /// What a unit of swept volume adds to the first key.
+    swept_price: f64,
+    /// Of every so many views one is enough for the first keys of an edge; 1 is all views.
+    glance: u32,
+    /// Views of the set.
+    views: usize,
+    scratch: PictureScratch<E::Scratch>,
+}
+
+/// Buffers of one thread.
+#[derive(Debug)]
+pub struct ImageScratch<S> {
+    pictures: PictureScratch<S>,
+    patch: Patch,
+}
+
+impl<E: Unrender> ImageDriven<E> {
+    /// Prepares the pictures of `live` in the views of the original's pictures (in the same frame). `rms_limit` ends the
+    /// run before the root mean square of the luma differences over all views exceeds it.
+    #[must_use]
+    pub fn new(
+        reference: &Reference,
+        live: &LiveMesh,
+        placement: MemorylessOptions,
+        rms_limit: Option<f64>,
+    ) -> Self {
+        let pictures = Pictures::new(reference, live);
+        Self {
+            limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
+            scratch: pictures.lone_scratch(),
+            pictures,
+            placement,
+            swept_price: 0.0,
+            glance: 1,
+            views: reference.set().views.len(),
+        }
+    }
+
+    /// Charges `price` units of image error for every unit of volume (frame units cubed) that a collapse sweeps, the root
+    /// of its memoryless cost: what few pictures show would else be given up first, however far from the original that
+    /// leads. 0, the published method, unless asked for.
+    #[must_use]
+    pub fn with_swept_price(mut self, price: f64) -> Self {
+        self.swept_price = price;
+        self
+    }
+
+    /// Of every so many views one is enough for the first keys of an edge, under which it waits to be looked at in all of
+    /// them; 1, the published method, unless asked for. Where a glance would see fewer than five views, it sees all.
+    #[must_use]
+    pub fn with_glance(mut self, every: u32) -> Self {
+        let seen = self.views / every.max(1) as usize;
+        self.glance = if seen < LEAST_SEEN { 1 } else { every };
+        self
+    }
+
+    /// Prices the collapse of the site's edge by the views of a glance.
+    fn price(
+        &self,
+        site: &Site<'_>,
+        glance: Glance,
+        scratch: &mut ImageScratch<E::Scratch>,
+    ) -> Result<Proposal, Refusal> {
+        let proposal = memoryless::propose(site, &self.placement)?;
+        let ImageScratch { pictures, patch } = scratch;
+        site.patch(proposal.position, patch);
+        let seen = self.pictures.cost(site.live, patch, glance, pictures);
+        let image = match glance {
+            Glance::Part(every) => {
+                let part = self.views.div_ceil(every.max(1) as usize).max(1);
+                let all = (i128::from(seen) * self.views as i128 / part as i128) as i64;
+                // The front of the queue is looked at anyway: better there too early than too late.
+                let early = |cost: i64| (cost as f64 * EARLY) as i64;
+                if all > 0 { early(all) } else { all }
+            }
+            _ => seen,
+        };
+        let swept = self.swept_price * sqrt(proposal.geometric.max(0.0));
+        let image = image.saturating_add(swept as i64);
+        Ok(Proposal { image, ..proposal })
+    }
+
+    /// The pictures and their distance from the original's.
+    #[must_use]
+    pub fn error(&self) -> &ImageError<E> {
+        self.pictures.error()
+    }
+
+    /// The pictures, which show the mesh as the run left it.
+    #[must_use]
+    pub fn into_pictures(self) -> Pictures<E> {
+        self.pictures
+    }
+}
+
+impl<E: Unrender> Method for ImageDriven<E> {
+    type Scratch = ImageScratch<E::Scratch>;
+
+    fn scratch(&self) -> Self::Scratch {
+        ImageScratch {
+            pictures: self.pictures.scratch(),
+            patch: Patch::default(),
+        }
+    }
+
+    fn lone_scratch(&self) -> Self::Scratch {
+        ImageScratch {
+            pictures: self.pictures.lone_scratch(),
+            patch: Patch::default(),
+        }
+    }
+
+    fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
+        self.price(site, Glance::Whole, scratch)
+    }
+
+    fn glances(&self) -> bool {
+        self.glance > 1
+    }
+
+    fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
+        self.price(site, Glance::Part(self.glance), scratch)
+    }
+
+    fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
+        let Some(limit) = self.limit else { return true };
+        // The proposal's cost may be stale: ask again.
+        let cost = self
+            .pictures
+            .cost(live, patch, Glance::Whole, &mut self.scratch);
+        (self.pictures.error().sum() as i64 + cost) as f64 <= limit
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.pictures.commit(live, patch, &mut self.scratch);
+    }
+
+    fn shared_batch(&self) -> usize {
+        2
+    }
+
+    fn evaluations_per_task(&self) -> usize {
+        16
+    }
+}
