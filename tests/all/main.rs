@@ -1,90 +1,16 @@
-//! Every integration test in one binary: a module per stage.
+//! Every integration test in one binary: a folder per room.
 
-mod appearance;
 mod architecture;
-mod billboards;
 mod bound;
-mod bound_command;
 mod cli;
 mod collapse;
-mod compare;
-mod correspondence;
-mod deviation;
-mod edge_cases;
-mod embree;
-mod envelope;
-mod fallback;
-mod findings;
-mod generate;
+mod encode;
 mod golden;
-mod guided;
-mod history;
-mod hostile;
-mod hubs;
-mod image;
-mod interior;
 mod io;
-mod io_errors;
-mod levels;
-mod memoryless;
 mod mesh;
 mod metric;
-mod metric_surface;
-mod oracle;
-mod output;
-mod planar;
-mod planted_bugs;
-mod point_bounds;
-mod polish;
-mod quadric;
 mod raster;
-mod rays;
-mod seams;
-mod shapes;
-mod streams;
-mod tiles;
-mod tolerance;
-mod tolerance_volume;
-mod unfold;
-mod unrender;
-mod verify;
+mod simplify;
+mod support;
 mod view;
-mod view_bounded;
-mod view_cell;
 mod visibility;
-mod zbuffer;
-
-/// A property test of so many cases that writes nothing into the source tree when it fails.
-fn cases(count: u32) -> proptest::test_runner::Config {
-    proptest::test_runner::Config {
-        failure_persistence: None,
-        ..proptest::test_runner::Config::with_cases(count)
-    }
-}
-
-/// A number from the environment.
-fn number(name: &str, default: u64) -> u64 {
-    std::env::var(name).map_or(default, |v| v.parse().expect("a whole number"))
-}
-
-/// Cases of a property of bounds: as many as `LODMARK_BOUND_CASES` says, else so many.
-fn bound_cases(default: u64) -> u64 {
-    number("LODMARK_BOUND_CASES", default)
-}
-
-/// The number that cases of bounds are drawn from: `LODMARK_SEED`, else 2007.
-fn bound_seed() -> u64 {
-    number("LODMARK_SEED", 2007)
-}
-
-/// As [`cases`], for a property of bounds: where `LODMARK_BOUND_CASES` is given, the cases are those of [`bound_seed`].
-fn bounded(default: u32) -> proptest::test_runner::Config {
-    let own = cases(u32::try_from(bound_cases(default.into())).expect("a number of cases"));
-    if std::env::var_os("LODMARK_BOUND_CASES").is_none() {
-        return own;
-    }
-    proptest::test_runner::Config {
-        rng_seed: proptest::test_runner::RngSeed::Fixed(bound_seed()),
-        ..own
-    }
-}

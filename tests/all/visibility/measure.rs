@@ -235,7 +235,7 @@ fn a_part_of_a_triangle_counts_more_than_all_of_it() {
 }
 
 proptest! {
-    #![proptest_config(crate::cases(8))]
+    #![proptest_config(crate::support::cases(8))]
 
     #[test]
     fn the_way_a_triangle_is_turned_changes_its_two_sided_visibility(flips in any::<u64>()) {

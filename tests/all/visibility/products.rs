@@ -39,7 +39,7 @@ fn removing_what_is_hidden_changes_a_picture() {
 }
 
 proptest! {
-    #![proptest_config(crate::cases(12))]
+    #![proptest_config(crate::support::cases(12))]
 
     #[test]
     fn a_ring_more_keeps_less_or_not_the_neighbours(rings in 0..5_u32) {

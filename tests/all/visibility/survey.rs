@@ -19,7 +19,7 @@ fn part(options: &Options, range: std::ops::Range<u32>) -> Survey {
 }
 
 proptest! {
-    #![proptest_config(crate::cases(24))]
+    #![proptest_config(crate::support::cases(24))]
 
     #[test]
     fn parts_in_another_order_or_split_sum_up_to_other_bytes(

@@ -1,0 +1,210 @@
+//! The certificate against brute force: a yes is never wrong, a no only near the bound.
+
+use glam::DVec3;
+use lodmark::bound::envelope::{Change, Coverage, Facet, Pieces, Reach, Surface, Trial};
+
+use crate::{bound::tolerance_volume::cases, support::Random, support::meshes};
+
+/// Squared distance from a point to a triangle: the least over its face, sides and corners, all of them.
+pub(crate) fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let segment = |x: DVec3, y: DVec3| {
+        let d = y - x;
+        let t = if d.length_squared() > 0.0 {
+            ((p - x).dot(d) / d.length_squared()).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (x + d * t - p).length()
+    };
+    let edges = segment(a, b).min(segment(b, c)).min(segment(c, a));
+    let n = (b - a).cross(c - a);
+    let inside = |x: DVec3, y: DVec3| (y - x).cross(p - x).dot(n) >= 0.0;
+    if n.length_squared() > 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
+        edges.min((p - a).dot(n).abs() / n.length())
+    } else {
+        edges
+    }
+}
+
+fn vector(random: &mut Random, size: f64) -> DVec3 {
+    let mut axis = || (random.unit() * 2.0 - 1.0) * size;
+    DVec3::new(axis(), axis(), axis())
+}
+
+fn triangle(random: &mut Random, size: f64) -> [DVec3; 3] {
+    let middle = vector(random, 1.0);
+    [0; 3].map(|_| middle + vector(random, size))
+}
+
+fn to_all(p: DVec3, all: &[[DVec3; 3]]) -> f64 {
+    let distances = all.iter().map(|&t| distance(p, t));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// Points of a triangle: a lattice, corners and sides included.
+pub(crate) fn lattice([a, b, c]: [DVec3; 3], steps: u32) -> impl Iterator<Item = DVec3> {
+    (0..=steps).flat_map(move |i| {
+        (0..=steps - i).map(move |j| {
+            let (s, t) = (
+                f64::from(i) / f64::from(steps),
+                f64::from(j) / f64::from(steps),
+            );
+            a + (b - a) * s + (c - a) * t
+        })
+    })
+}
+
+/// The largest sampled distance of a triangle from others.
+fn farthest(of: [DVec3; 3], from: &[[DVec3; 3]]) -> f64 {
+    let distances = lattice(of, 12).map(|p| to_all(p, from));
+    distances.fold(0.0, f64::max)
+}
+
+#[test]
+fn the_distance_to_a_triangle_is_that_to_its_nearest_point_and_never_shorter() {
+    let mut random = Random(0xfa);
+    for case in 0..20 * cases() {
+        let mut corners = triangle(&mut random, 1.0);
+        match case % 5 {
+            // A needle, a segment, a point.
+            0 => {
+                corners[2] =
+                    corners[0] + (corners[1] - corners[0]) * 0.3 + vector(&mut random, 1e-9)
+            }
+            1 => corners[2] = corners[1],
+            2 if case % 2 == 0 => corners = [corners[0]; 3],
+            _ => {}
+        }
+        let p = vector(&mut random, 2.0);
+        let found = lodmark::num::math::sqrt(Facet::new(corners).distance2(p));
+        let expected = distance(p, corners);
+        assert!(
+            (found - expected).abs() <= 1e-8,
+            "{p} {corners:?}: {found} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_triangle_that_is_held_is_within_reach_and_one_well_within_reach_is_held() {
+    let mut random = Random(0xe1);
+    let (mut held, mut refused) = (0, 0);
+    for _ in 0..cases() {
+        // A wavy sheet, so that neighbours share edges, and strays.
+        let mesh = meshes::grid(3, random.next());
+        let original: Vec<[DVec3; 3]> = (0..mesh.triangles().len())
+            .map(|t| mesh.corners(t))
+            .collect();
+        let surface = Surface::new(original.iter().copied());
+        let new = [0; 3].map(|_| {
+            DVec3::new(
+                3.0 * random.unit(),
+                3.0 * random.unit(),
+                0.6 * random.unit(),
+            )
+        });
+        let most = farthest(new, &original);
+        let share = 0.5 + random.unit();
+        let reach = Reach::new(most * share, 3.0).expect("large enough");
+        let yes = surface.holds([new].into_iter(), reach, &mut Pieces::default());
+        if share < 1.0 {
+            assert!(
+                !yes,
+                "a point is at {most}, and {} was certified",
+                most * share
+            );
+            refused += 1;
+        } else if share > 1.15 {
+            assert!(
+                yes,
+                "the farthest of all samples is at {most}, bound {}",
+                most * share
+            );
+            held += 1;
+        }
+    }
+    assert!(held > cases() / 10 && refused > cases() / 10);
+}
+
+#[test]
+fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound() {
+    let mut random = Random(0xc0e);
+    let (mut yes, mut no) = (0, 0);
+    for _ in 0..cases() / 4 {
+        let mesh = meshes::grid(3, random.next());
+        let original: Vec<[DVec3; 3]> = (0..mesh.triangles().len())
+            .map(|t| mesh.corners(t))
+            .collect();
+        let mut live: Vec<Option<[DVec3; 3]>> = original.iter().map(|&t| Some(t)).collect();
+        let mut coverage = Coverage::new(mesh.positions(), mesh.triangles());
+        let reach = Reach::new(0.1 + 0.5 * random.unit(), 3.0).expect("large enough");
+        let (mut trial, mut change) = (Trial::default(), Change::default());
+        for _ in 0..12 {
+            // Some neighbours go; all but one of them come back, bent.
+            let first = random.below(live.len());
+            let ids: Vec<u32> = (first..(first + 4).min(live.len()))
+                .filter(|&t| live[t].is_some())
+                .map(|t| t as u32)
+                .collect();
+            if ids.len() < 2 {
+                continue;
+            }
+            let size = 0.6 * reach.length * random.unit();
+            let kept = &ids[usize::from(random.below(3) == 0)..];
+            let fan: Vec<[DVec3; 3]> = kept
+                .iter()
+                .filter_map(|&t| live[t as usize])
+                .map(|corners| corners.map(|p| p + vector(&mut random, size)))
+                .collect();
+            coverage.gather(&ids, |t| live[t as usize], reach, &mut trial);
+            let covers = trial.covers(fan.iter().copied(), reach);
+            let assigned = trial.assign(&ids, kept, fan.iter().copied(), reach, &mut change);
+            assert_eq!(covers, assigned);
+            let mut after = live.clone();
+            for &t in &ids {
+                after[t as usize] = None;
+            }
+            for (&t, &corners) in kept.iter().zip(&fan) {
+                after[t as usize] = Some(corners);
+            }
+            let all: Vec<[DVec3; 3]> = after.iter().flatten().copied().collect();
+            let most = original.iter().map(|&t| farthest(t, &all));
+            let most = most.fold(0.0, f64::max);
+            if covers {
+                assert!(
+                    most <= reach.length * (1.0 + 1e-9),
+                    "{most} for {}",
+                    reach.length
+                );
+                coverage.apply(&change);
+                live = after;
+                yes += 1;
+            } else {
+                // Only faces next to the change are asked: it may be one of the others that is near.
+                no += 1;
+            }
+            for t in 0..original.len() as u32 {
+                let witnesses: Vec<[DVec3; 3]> = coverage
+                    .witnesses(t)
+                    .iter()
+                    .map(|&w| live[w as usize].expect("a witness is alive"))
+                    .collect();
+                let most = farthest(original[t as usize], &witnesses);
+                assert!(most <= reach.length * (1.0 + 1e-9), "triangle {t}: {most}");
+            }
+        }
+    }
+    assert!(yes > cases() / 4 && no > cases() / 10, "{yes} {no}");
+}
+
+#[test]
+fn a_bound_that_rounding_would_swallow_is_no_bound() {
+    assert_eq!(Reach::new(0.0, 1.0), None);
+    assert_eq!(Reach::new(-1.0, 1.0), None);
+    assert_eq!(Reach::new(f64::NAN, 1.0), None);
+    assert_eq!(Reach::new(f64::INFINITY, 1.0), None);
+    assert_eq!(Reach::new(1e-15, 1.0), None);
+    assert_eq!(Reach::new(1e-9, 1e9), None);
+    let reach = Reach::new(1e-9, 1.0).expect("large enough");
+    assert!(reach.length < 1e-9 && reach.length > 0.99e-9);
+}

@@ -1,0 +1,430 @@
+//! Claims about distances.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
+
+use glam::DVec3;
+use lodmark::{
+    Silent,
+    bound::verify::{Claim, DistanceReport, distance},
+    mesh::{
+        Mesh,
+        generate::{self, Pcg32},
+    },
+};
+use proptest::prelude::*;
+
+use crate::{
+    support::bounded, support::code, support::expect, support::folder, support::lodmark,
+    support::put, support::stdout,
+};
+
+fn check(reference: &Mesh, low: &Mesh, claim: Claim) -> DistanceReport {
+    distance(reference, low, claim, false, 2_000, &Silent).expect("both have triangles")
+}
+
+/// The mesh with one vertex moved.
+fn moved(mesh: &Mesh, vertex: usize, by: DVec3) -> Mesh {
+    let mut positions = mesh.positions().to_vec();
+    positions[vertex] += by;
+    Mesh::from_triangles(positions, mesh.triangles().to_vec()).expect("valid")
+}
+
+fn sheet(z: f64) -> Mesh {
+    let corner = |x, y| DVec3::new(x, y, z);
+    let corners = vec![
+        corner(0.0, 0.0),
+        corner(4.0, 0.0),
+        corner(4.0, 3.0),
+        corner(0.0, 3.0),
+    ];
+    Mesh::from_triangles(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("valid")
+}
+
+#[test]
+fn parallel_sheets_are_as_far_apart_as_their_planes() {
+    let (low, high) = (sheet(0.0), sheet(0.125));
+    let held = check(&low, &high, Claim::Absolute(0.125));
+    assert!(held.holds, "{held:?}");
+    for d in &held.directions {
+        assert!((d.farthest.distance - 0.125).abs() < 1e-15, "{d:?}");
+    }
+    assert!((held.diagonal - 5.0).abs() < 1e-12);
+    let broken = check(&low, &high, Claim::Relative(0.125 / 5.0 / 1.01));
+    assert!(!broken.holds && broken.directions.iter().all(|d| d.violations > 2_000));
+}
+
+#[test]
+fn a_claim_that_holds_with_a_margin_is_proven() {
+    let held = check(&sheet(0.0), &sheet(0.125), Claim::Absolute(0.126));
+    assert!(held.holds && held.proven, "{held:?}");
+    let sphere = generate::icosphere(3);
+    assert!(check(&sphere, &sphere, Claim::Relative(1e-6)).proven);
+}
+
+#[test]
+fn a_vertex_one_percent_too_far_out_is_found_and_one_percent_less_is_not() {
+    let sphere = generate::icosphere(3);
+    let claim = 0.03125;
+    for vertex in [0, 100, 641] {
+        let outward = sphere.positions()[vertex].normalize();
+        let broken = check(
+            &sphere,
+            &moved(&sphere, vertex, outward * (1.01 * claim)),
+            Claim::Absolute(claim),
+        );
+        assert!(!broken.holds, "{broken:?}");
+        let worst = &broken.directions[0].farthest;
+        assert!((DVec3::from_array(worst.point).length() - 1.0 - 1.01 * claim).abs() < 1e-6);
+        let held = check(
+            &sphere,
+            &moved(&sphere, vertex, outward * (0.99 * claim)),
+            Claim::Absolute(claim),
+        );
+        assert!(held.holds && held.proven, "{held:?}");
+    }
+}
+
+#[test]
+fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
+    // The hole in the roof is farthest from its middle, where no vertex, edge midpoint or sample need be.
+    let roof = sheet(0.0);
+    let frame = {
+        let mut positions = roof.positions().to_vec();
+        positions.extend(
+            [(1.0, 1.0), (1.5, 1.0), (1.5, 1.5), (1.0, 1.5)].map(|(x, y)| DVec3::new(x, y, 0.0)),
+        );
+        let triangles = vec![
+            [0, 1, 5],
+            [0, 5, 4],
+            [1, 2, 6],
+            [1, 6, 5],
+            [2, 3, 7],
+            [2, 7, 6],
+            [3, 0, 4],
+            [3, 4, 7],
+        ];
+        Mesh::from_triangles(positions, triangles).expect("valid")
+    };
+    let report =
+        |claim| distance(&roof, &frame, Claim::Absolute(claim), false, 1, &Silent).expect("valid");
+    assert!(!report(0.25 / 1.01).holds);
+    let held = report(0.25 * 1.01);
+    assert!(held.holds && held.proven, "{held:?}");
+    // Nothing is looked at closely under a claim that is far too large; what is proven is true all the same.
+    let loose = report(100.0);
+    assert!(loose.directions[1].proven >= 0.25, "{loose:?}");
+    // Every point of the frame lies on the roof.
+    let one_sided =
+        distance(&roof, &frame, Claim::Absolute(1e-2), true, 100, &Silent).expect("valid");
+    assert!(one_sided.holds && one_sided.proven && one_sided.directions.len() == 1);
+}
+
+#[test]
+fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() {
+    // Two walls that end in points, and a sheet between these: along x = 0 both are as far, at the upper side farthest.
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let wall = |x: f64| {
+        [
+            p(x, 0.0, 0.0),
+            p(3.0 * x, 2.0, -1.0),
+            p(3.0 * x, -2.0, -1.0),
+        ]
+    };
+    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+    let walls = walls.expect("valid");
+    for (i, (left, right)) in [(-0.5, 0.37), (-0.123, 0.456), (-0.31, 0.2)]
+        .iter()
+        .enumerate()
+    {
+        let upper = 0.3 + 0.1 * i as f64;
+        let corners = vec![
+            p(*left, upper, 0.0),
+            p(0.05, -0.1, 0.0),
+            p(*right, upper, 0.0),
+        ];
+        let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+        let most = libm::sqrt(1.0 + upper * upper);
+        for share in [1e-3, 1e-5, 1e-7] {
+            let claim = Claim::Absolute(most * (1.0 + share));
+            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            assert!(found.proven, "{share}: {found:?}");
+            let proven = found.directions[0].proven;
+            assert!(proven >= most * (1.0 - 1e-12), "{proven} below {most}");
+            let claim = Claim::Absolute(most * (1.0 - share));
+            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            assert!(!found.proven, "{share}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn samples_crowd_on_some_triangles() {
+    // Every third triangle of a row is raised; they are of all sizes, and the last one stays.
+    let mut random = Pcg32::new(7, 3);
+    let (mut flat, mut raised, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut area, mut length, mut shares) = (0.0, 0.0, [0.0; 2]);
+    for t in 0..31_u32 {
+        let size = 0.2 + random.unit();
+        let x = 3.0 * f64::from(t);
+        let corners = [(x, 0.0), (x + size, 0.0), (x, size)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let up = t % 3 == 1;
+        let by = DVec3::Z * if up { 1.0 } else { 0.0 };
+        flat.extend(corners);
+        raised.extend(corners.map(|p| p + by));
+        faces.push([3 * t, 3 * t + 1, 3 * t + 2]);
+        area += size * size;
+        length += size;
+        if up {
+            shares[0] += size * size;
+            shares[1] += size;
+        }
+    }
+    let flat = Mesh::from_triangles(flat, faces.clone()).expect("valid");
+    let raised = Mesh::from_triangles(raised, faces).expect("valid");
+    let claim = Claim::Absolute(0.5);
+    let found = distance(&flat, &raised, claim, true, 9_000, &Silent).expect("valid");
+    // Eight ninths by area, one by length, and all corners: of ten raised triangles.
+    let expected = 8_000.0 * shares[0] / area + 1_000.0 * shares[1] / length + 30.0;
+    let violations = found.directions[0].violations as f64;
+    assert!(
+        (violations - expected).abs() < 0.005 * 9_000.0,
+        "{violations} of {expected}"
+    );
+}
+
+#[test]
+fn what_no_cut_decides_is_said_to_be_proven() {
+    // Along all of x = 0 both walls are as far as the claim: no part across that line is near one of them as a whole.
+    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let wall = |x: f64| [p(x, -9.0, 0.0), p(x, 9.0, 0.0), p(3.0 * x, 0.0, -1.0)];
+    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+    let corners = vec![p(-0.5, 0.0, 0.0), p(0.4, 0.1, 0.0), p(-0.1, 2.0, 0.0)];
+    let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+    let claim = Claim::Absolute(1.0);
+    let found = distance(&walls.expect("valid"), &sheet, claim, true, 50, &Silent).expect("valid");
+    assert!(found.holds && !found.proven, "{found:?}");
+    let [only] = &found.directions[..] else {
+        panic!("{found:?}");
+    };
+    assert!(
+        !only.is_proven && only.proven > 1.0 && only.undecided_area > 0.0,
+        "{only:?}"
+    );
+}
+
+#[test]
+fn needles_points_and_segments_are_surfaces_too() {
+    let positions = vec![
+        DVec3::ZERO,
+        DVec3::X,
+        DVec3::new(2.0, 1e-12, 0.0),
+        DVec3::new(0.0, 0.0, 3.0),
+    ];
+    let needle = Mesh::from_triangles(positions.clone(), vec![[0, 1, 2]]).expect("valid");
+    let point = Mesh::from_triangles(positions, vec![[3, 3, 3]]).expect("valid");
+    let report = check(&needle, &point, Claim::Absolute(4.0));
+    assert!(report.holds && report.proven, "{report:?}");
+    let [to_needle, to_point] = &report.directions[..] else {
+        panic!("{report:?}");
+    };
+    assert!((to_needle.farthest.distance - 3.0).abs() < 1e-9);
+    assert!((to_point.farthest.distance - libm::sqrt(13.0)).abs() < 1e-9);
+    assert!(!check(&needle, &point, Claim::Absolute(3.5)).holds);
+}
+
+#[test]
+fn claims_without_a_meaning_are_refused() {
+    let sheet = sheet(0.0);
+    for claim in [-1.0, f64::NAN, f64::INFINITY] {
+        let refused = distance(&sheet, &sheet, Claim::Relative(claim), false, 1, &Silent);
+        assert_eq!(refused.expect_err("no claim").exit_code(), 2);
+    }
+    let empty = Mesh::default();
+    for (a, b) in [(&sheet, &empty), (&empty, &sheet)] {
+        let refused = distance(a, b, Claim::Relative(0.1), false, 1, &Silent);
+        assert_eq!(refused.expect_err("nothing to measure").exit_code(), 3);
+    }
+    assert!(
+        check(&sheet, &sheet, Claim::Relative(0.0)).holds,
+        "no distance at all"
+    );
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let (a, b) = (generate::icosphere(3), generate::icosphere(1));
+    let reports: Vec<DistanceReport> = [1, 2, 3]
+        .map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads").install(|| {
+                distance(&a, &b, Claim::Relative(0.01), false, 100_000, &Silent).expect("valid")
+            })
+        })
+        .into();
+    assert_eq!(reports[0], reports[1]);
+    assert_eq!(reports[0], reports[2]);
+}
+
+fn soup(random: &mut Pcg32, triangles: usize) -> Mesh {
+    let mut coordinate = || (random.unit() * 8.0).floor() / 4.0 + random.unit() * 0.125;
+    let positions: Vec<DVec3> = (0..3 * triangles)
+        .map(|_| DVec3::new(coordinate(), coordinate(), coordinate()))
+        .collect();
+    let corners = (0..triangles as u32)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    Mesh::from_triangles(positions, corners).expect("valid")
+}
+
+/// Distance by descent on the weights of every triangle: no closed form.
+fn slow_distance(p: DVec3, mesh: &Mesh) -> f64 {
+    let mut best = f64::INFINITY;
+    for t in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.corners(t);
+        let at = |u: f64, v: f64| (a + (b - a) * u + (c - a) * v - p).length();
+        let (mut u, mut v, mut step) = (1.0 / 3.0, 1.0 / 3.0, 0.5);
+        while step > 1e-7 {
+            let mut least = (at(u, v), u, v);
+            for (du, dv) in [
+                (1.0, 0.0),
+                (-1.0, 0.0),
+                (0.0, 1.0),
+                (0.0, -1.0),
+                (1.0, -1.0),
+                (-1.0, 1.0),
+                (1.0, 1.0),
+                (-1.0, -1.0),
+            ] {
+                let (x, y) = ((u + du * step).max(0.0), (v + dv * step).max(0.0));
+                let s = (x + y).max(1.0);
+                let (x, y) = (x / s, y / s);
+                if at(x, y) < least.0 {
+                    least = (at(x, y), x, y);
+                }
+            }
+            if least.0 < at(u, v) {
+                (u, v) = (least.1, least.2);
+            } else {
+                step *= 0.5;
+            }
+        }
+        best = best.min(at(u, v));
+    }
+    best
+}
+
+proptest! {
+    #![proptest_config(bounded(60))]
+
+    #[test]
+    fn no_point_is_farther_than_proven_and_the_farthest_one_is_as_far_as_said(seed: u64) {
+        let mut random = Pcg32::new(seed, 1);
+        let counts = [1 + random.bits() % 4, 1 + random.bits() % 6].map(|n| n as usize);
+        let (a, b) = (soup(&mut random, counts[0]), soup(&mut random, counts[1]));
+        let report = distance(&a, &b, Claim::Relative(random.unit()), false, 300, &Silent).expect("valid");
+        for (d, (from, to)) in report.directions.iter().zip([(&b, &a), (&a, &b)]) {
+            let said = d.farthest.distance;
+            let there = slow_distance(DVec3::from_array(d.farthest.point), to);
+            prop_assert!((there - said).abs() < 1e-4 * report.diagonal, "{there} {d:?}");
+            let corners = from.corners(d.farthest.triangle as usize);
+            let single = Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid");
+            prop_assert!(slow_distance(DVec3::from_array(d.farthest.point), &single) < 1e-4 * report.diagonal);
+            prop_assert!(d.proven >= said && d.holds == (said <= report.claimed * (1.0 + 1e-9) + 2e-10 * report.diagonal));
+            for _ in 0..20 {
+                let [p, q, r] = from.corners(random.bits() as usize % from.triangles().len());
+                let (u, v) = (random.unit(), random.unit());
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let measured = slow_distance(p + (q - p) * u + (r - p) * v, to);
+                prop_assert!(measured <= d.proven + 1e-9 * report.diagonal, "{measured} {d:?}");
+            }
+            if d.holds {
+                prop_assert!(d.undecided_area > 0.0 || d.proven <= report.claimed * (1.0 + 1e-8) + 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_command_ends_with_the_code_of_its_verdict() {
+    let dir = folder();
+    let sphere = generate::icosphere(2);
+    put(&dir, "ref.ply", &sphere);
+    let outward = sphere.positions()[5].normalize();
+    put(&dir, "low.ply", &moved(&sphere, 5, outward * 0.101));
+    let run = |error: &str, more: &[&str]| {
+        let words = [
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--error-abs",
+            error,
+            "--samples",
+            "1000",
+            "--json",
+            "r.json",
+        ];
+        lodmark(&dir, &[&words, more].concat())
+    };
+    let broken = run("0.1", &[]);
+    assert_eq!(code(&broken), 1);
+    assert!(
+        stdout(&broken).contains("the claim is broken"),
+        "{}",
+        stdout(&broken)
+    );
+    let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(json["holds"], false);
+    assert_eq!(json["directions"][0]["from"], "simplified");
+    let held = run("0.102", &["--one-sided"]);
+    assert_eq!(code(&held), 0);
+    assert!(stdout(&held).contains("proven"), "{}", stdout(&held));
+    expect(&dir, 2, &["verify", "ref.ply", "low.ply"]);
+    expect(&dir, 2, &["verify", "ref.ply", "low.ply", "--error", "-1"]);
+    expect(
+        &dir,
+        2,
+        &[
+            "verify",
+            "ref.ply",
+            "low.ply",
+            "--error",
+            "0.1",
+            "--error-abs",
+            "1",
+        ],
+    );
+    expect(
+        &dir,
+        5,
+        &["verify", "ref.ply", "none.ply", "--error", "0.1"],
+    );
+}
+
+#[test]
+fn a_face_without_area_is_near_by_having_none() {
+    let p = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let mut corners = vec![
+        p(-1.0, -1.0),
+        p(-1.0, 1.0),
+        p(-3.0, 0.0),
+        p(1.0, -1.0),
+        p(1.0, 1.0),
+        p(3.0, 0.0),
+    ];
+    let mut faces = vec![[0, 1, 2], [3, 4, 5]];
+    let reference = Mesh::from_triangles(corners.clone(), faces.clone()).expect("valid");
+    // A line across the gap, whose middle is 1 from both sides.
+    corners.extend([
+        p(-0.712_345_612_345, 0.0),
+        p(0.587_654_398_765, 0.0),
+        p(0.1234, 0.0),
+    ]);
+    faces.push([6, 7, 8]);
+    let low = Mesh::from_triangles(corners, faces).expect("valid");
+    let claim = Claim::Absolute(0.999_94);
+    let found = distance(&reference, &low, claim, true, 9, &Silent).expect("both have triangles");
+    assert!(!found.proven, "{found:?}");
+    let found = distance(&reference, &low, Claim::Absolute(1.01), true, 9, &Silent);
+    assert!(found.expect("both have triangles").proven);
+}

@@ -1,0 +1,8 @@
+//! The command as a user runs it.
+
+mod bound;
+mod compare;
+mod exit_codes;
+mod levels;
+mod odd_files;
+mod visibility;

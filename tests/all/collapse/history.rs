@@ -1,0 +1,124 @@
+//! Recorded runs: any level, in both directions, from bytes nobody can trust.
+
+use lodmark::{
+    Error, Silent,
+    collapse::{History, Replay},
+    mesh::Mesh,
+    simplify::{Amount, Options, Outcome, simplify},
+};
+use proptest::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::support::meshes;
+
+fn run(mesh: &Mesh, triangles: u64) -> Outcome {
+    let mut options = Options::memoryless(Amount::Triangles(triangles));
+    // What is repaired after the last collapse belongs to the level where the run ended.
+    options.unfold = false;
+    simplify(mesh, &options, &Silent).expect("valid")
+}
+
+fn read(bytes: &[u8]) -> Result<History, Error> {
+    History::from_bytes(bytes, "run.lmh")
+}
+
+proptest! {
+    #![proptest_config(crate::support::cases(24))]
+
+    #[test]
+    fn every_level_of_a_replay_is_the_direct_run_to_it(
+        kind in 0_usize..8, seed: u64, levels in prop::collection::vec(1_u64..140, 1..8),
+    ) {
+        let mesh = meshes::any(kind, seed);
+        let history = read(&run(&mesh, 1).history.to_bytes()).expect("just written");
+        let mut walk = Replay::new(&mesh, &history).expect("the same mesh");
+        for level in levels {
+            walk.seek(level as usize).expect("fits");
+            let mut fresh = Replay::new(&mesh, &history).expect("the same mesh");
+            fresh.seek(level as usize).expect("fits");
+            prop_assert_eq!(walk.applied(), fresh.applied());
+            prop_assert_eq!(walk.live().to_mesh(), fresh.live().to_mesh());
+            if mesh.triangles().len() as u64 > level {
+                prop_assert_eq!(walk.live().to_mesh(), Ok(run(&mesh, level).mesh));
+            }
+        }
+        while walk.back() {}
+        prop_assert_eq!(walk.applied(), 0);
+        prop_assert_eq!(walk.live().triangle_count(), fresh_count(&mesh));
+    }
+
+    #[test]
+    fn damaged_histories_are_refused_without_a_panic(
+        kind in 0_usize..8, at: prop::sample::Index, bit in 0_u8..8, cut: bool, repair: bool,
+    ) {
+        let mesh = meshes::any(kind, 5);
+        let bytes = run(&mesh, 8).history.to_bytes();
+        let mut damaged = bytes.clone();
+        let at = at.index(bytes.len() - 32);
+        if cut {
+            damaged.truncate(at);
+        } else {
+            damaged[at] ^= 1 << bit;
+        }
+        if repair && damaged.len() > 32 {
+            // Someone who means harm repairs the checksum.
+            let body = damaged.len() - if cut { 0 } else { 32 };
+            damaged.truncate(body);
+            let sum = Sha256::digest(&damaged);
+            damaged.extend(sum);
+        }
+        match read(&damaged) {
+            Err(e) => prop_assert!(matches!(e.exit_code(), 3 | 4), "{e}"),
+            Ok(history) => {
+                prop_assert!(repair, "the checksum missed the damage");
+                if let Ok(mut replay) = Replay::new(&mesh, &history)
+                    && let Err(e) = replay.seek(0)
+                {
+                    prop_assert_eq!(e.exit_code(), 3, "{}", e);
+                }
+            }
+        }
+    }
+}
+
+fn fresh_count(mesh: &Mesh) -> usize {
+    let whole = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    mesh.triangles().iter().filter(whole).count()
+}
+
+#[test]
+fn a_history_survives_its_file() {
+    for kind in 0..8 {
+        let outcome = run(&meshes::any(kind, 3), 4);
+        assert_eq!(
+            read(&outcome.history.to_bytes()).expect("just written"),
+            outcome.history
+        );
+    }
+}
+
+#[test]
+fn a_history_of_another_mesh_is_refused() {
+    let outcome = run(&meshes::torus(8, 6, 1), 40);
+    let other = meshes::torus(8, 6, 2);
+    let refused = Replay::new(&other, &outcome.history).expect_err("another mesh");
+    assert_eq!(refused.exit_code(), 3);
+}
+
+#[test]
+fn a_newer_format_is_unsupported_rather_than_damaged() {
+    let mut bytes = run(&meshes::torus(8, 6, 1), 40).history.to_bytes();
+    bytes[8] = 2;
+    assert_eq!(read(&bytes).expect_err("format 2").exit_code(), 4);
+    assert_eq!(read(b"solid cube").expect_err("no history").exit_code(), 3);
+}
+
+#[test]
+fn the_header_says_what_made_it() {
+    let wanted = Options::memoryless(Amount::Triangles(40));
+    let outcome = simplify(&meshes::torus(8, 6, 1), &wanted, &Silent).expect("valid");
+    let header = outcome.history.header();
+    assert_eq!(header.version, env!("CARGO_PKG_VERSION"));
+    let options: Options = serde_json::from_str(&header.options).expect("JSON");
+    assert_eq!(options, wanted);
+}

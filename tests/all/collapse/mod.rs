@@ -1,0 +1,7 @@
+//! The engine of collapses: adjacency, topology, queues, histories, seams, tiles.
+
+pub(crate) mod engine;
+mod high_valence;
+mod history;
+mod seams;
+mod tiles;

@@ -1,0 +1,404 @@
+//! Files: pictures, arrays, reports, sheets, hashes.
+
+use std::{collections::BTreeMap, fs, path::PathBuf};
+
+use lodmark::{
+    Error,
+    io::atomic,
+    output::{
+        hash::plane_sha256,
+        npy,
+        png::{self, Picture},
+        report,
+        sheet::{Style, Tile, difference_strip, sheet},
+    },
+    raster::Plane,
+};
+use proptest::prelude::*;
+
+/// A folder that is removed with everything in it.
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
+}
+
+fn file_with(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).expect("target is writable");
+    path
+}
+
+fn grey() -> impl Strategy<Value = Plane<u8>> {
+    (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
+        prop::collection::vec(any::<u8>(), (w * h) as usize)
+            .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+    })
+}
+
+fn rgb() -> impl Strategy<Value = Plane<[u8; 3]>> {
+    (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
+        prop::collection::vec(any::<[u8; 3]>(), (w * h) as usize)
+            .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+    })
+}
+
+proptest! {
+    #![proptest_config(crate::support::cases(40))]
+
+    #[test]
+    fn a_picture_reads_back_as_it_was_written(grey in grey(), rgb in rgb()) {
+        let folder = folder();
+        let path = folder.path().join("a.png");
+        png::write_grey(&path, &grey).expect("written");
+        prop_assert_eq!(png::read(&path).expect("read"), Picture::Grey(grey.clone()));
+        prop_assert_eq!(Picture::Grey(grey.clone()).into_rgb().map(|p| p[1]), grey);
+        png::write_rgb(&path, &rgb).expect("written");
+        prop_assert_eq!(png::read(&path).expect("read"), Picture::Rgb(rgb.clone()));
+        prop_assert_eq!(fs::read_dir(folder.path()).expect("readable").count(), 1);
+    }
+
+    #[test]
+    fn a_damaged_picture_is_an_error_and_never_a_panic(
+        rgb in rgb(),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..5),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let folder = folder();
+        let path = folder.path().join("a.png");
+        png::write_rgb(&path, &rgb).expect("written");
+        let mut bytes = fs::read(&path).expect("read");
+        for (at, value) in damage {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        let cut = cut.index(bytes.len() + 1);
+        for bytes in [&bytes[..], &bytes[..cut]] {
+            if let Err(e) = png::read(&file_with(&folder, "b.png", bytes)) {
+                prop_assert!(matches!(e, Error::Input { .. } | Error::Unsupported(_)), "{e}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_array_reads_back_as_it_was_written(
+        ids in (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
+            prop::collection::vec(any::<u32>(), (w * h) as usize)
+                .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+        }),
+        points in prop::collection::vec(prop::array::uniform3(-1e30_f32..1e30), 0..20),
+        levels in grey(),
+    ) {
+        let folder = folder();
+        let path = folder.path().join("a.npy");
+        npy::write_plane(&path, &ids).expect("written");
+        prop_assert_eq!(npy::read_plane::<u32>(&path).expect("read"), ids.clone());
+        prop_assert!(npy::read_plane::<f32>(&path).is_err(), "the type is part of the array");
+        let bytes = fs::read(&path).expect("read");
+        let cut = file_with(&folder, "cut.npy", &bytes[..bytes.len() - 1]);
+        prop_assert_eq!(npy::read_plane::<u32>(&cut).expect_err("cut off").exit_code(), 3);
+        let depth = ids.map(|id| id as f32 * 0.5);
+        npy::write_plane(&path, &depth).expect("written");
+        prop_assert_eq!(npy::read_plane::<f32>(&path).expect("read"), depth);
+        npy::write_plane(&path, &levels).expect("written");
+        prop_assert_eq!(npy::read_plane::<u8>(&path).expect("read"), levels);
+        npy::write_rows(&path, &points).expect("written");
+        prop_assert_eq!(npy::read_rows::<f32>(&path).expect("read"), points);
+    }
+
+    #[test]
+    fn a_damaged_array_is_an_error_and_never_a_panic(
+        levels in grey(),
+        damage in prop::collection::vec((0_usize..140, any::<u8>()), 1..5),
+        cut in 0_usize..160,
+    ) {
+        let folder = folder();
+        let path = folder.path().join("a.npy");
+        npy::write_plane(&path, &levels).expect("written");
+        let mut bytes = fs::read(&path).expect("read");
+        for (at, value) in damage {
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte = value;
+            }
+        }
+        for bytes in [&bytes[..], &bytes[..cut.min(bytes.len())]] {
+            let path = file_with(&folder, "b.npy", bytes);
+            if let Err(e) = npy::read_plane::<u8>(&path) {
+                prop_assert_eq!(e.exit_code(), 3);
+            }
+            let _ = npy::read_rows::<u8>(&path);
+        }
+    }
+
+    #[test]
+    fn a_hash_changes_with_every_pixel_and_with_the_shape(
+        image in grey(),
+        at in any::<prop::sample::Index>(),
+        change in 1_u8..=255,
+    ) {
+        let hash = plane_sha256(&image);
+        let mut other = image.clone();
+        let at = at.index(other.values().len());
+        other.values_mut()[at] ^= change;
+        prop_assert_ne!(plane_sha256(&other), hash.clone());
+        let row = Plane::new(image.values().len() as u32, 1, image.values().to_vec()).expect("same number");
+        prop_assert_eq!(plane_sha256(&row) == hash, image.height() == 1);
+    }
+}
+
+#[test]
+fn an_npy_file_has_the_bytes_that_numpy_writes() {
+    let folder = folder();
+    let path = folder.path().join("a.npy");
+    npy::write_plane(
+        &path,
+        &Plane::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values"),
+    )
+    .expect("written");
+    let bytes = fs::read(&path).expect("read");
+    assert_eq!(bytes[..8], *b"\x93NUMPY\x01\x00");
+    let header = String::from_utf8_lossy(&bytes[10..bytes.len() - 8]).into_owned();
+    for part in ["'descr': '<u4'", "'fortran_order': False", "'shape': (1, 2"] {
+        assert!(header.contains(part), "{part} in {header}");
+    }
+    assert_eq!((bytes.len() - 8) % 64, 0, "data is aligned");
+    assert_eq!(bytes[bytes.len() - 8..], [1, 0, 0, 0, 4, 3, 2, 1]);
+}
+
+#[test]
+fn an_array_that_claims_more_than_its_file_holds_is_refused() {
+    let folder = folder();
+    let path = folder.path().join("a.npy");
+    npy::write_plane(&path, &Plane::filled(9, 9, 7_u8)).expect("written");
+    let bytes = fs::read(&path).expect("read");
+    let mut file = bytes[..10].to_vec();
+    let body = format!(
+        "{:<117}\n",
+        "{'descr': '|u1', 'fortran_order': False, 'shape': (9999999999, 9999999999), }"
+    );
+    file.extend_from_slice(body.as_bytes());
+    let error = npy::read_plane::<u8>(&file_with(&folder, "b.npy", &file)).expect_err("too large");
+    assert_eq!(error.exit_code(), 3, "{error}");
+}
+
+#[test]
+fn a_hash_is_that_of_size_and_little_endian_values() {
+    // sha256(struct.pack("<3I", w, h, bytes per pixel) + array bytes), computed with Python's hashlib.
+    let ids = Plane::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values");
+    assert_eq!(
+        plane_sha256(&ids),
+        "bf4cbcc651f9cd94a4ba55a93a0a7d424c0376388d75828feb9848d7596be6ec"
+    );
+    let colours = Plane::new(1, 2, vec![[1_u8, 2, 3], [4, 5, 6]]).expect("2 values");
+    assert_eq!(
+        plane_sha256(&colours),
+        "8ce1c03b80056fb6a460ee3e2fe4806a652245300e854ddbfc307c0e4e71b92e"
+    );
+}
+
+#[test]
+fn a_picture_that_claims_a_size_it_cannot_have_is_refused_before_it_is_allocated() {
+    let folder = folder();
+    let path = folder.path().join("a.png");
+    png::write_grey(&path, &Plane::filled(3, 3, 7)).expect("written");
+    let bytes = fs::read(&path).expect("read");
+    for (side, word) in [(16_384_u32, "hold"), (20_000, ""), (u32::MAX, "")] {
+        let mut hostile = bytes.clone();
+        hostile[16..20].copy_from_slice(&side.to_be_bytes());
+        hostile[20..24].copy_from_slice(&side.to_be_bytes());
+        let crc = crc32(&hostile[12..29]);
+        hostile[29..33].copy_from_slice(&crc.to_be_bytes());
+        let error = png::read(&file_with(&folder, "b.png", &hostile)).expect_err("hostile");
+        assert_eq!(error.exit_code(), 3, "{error}");
+        assert!(error.to_string().contains(word), "{side}: {error}");
+    }
+    let text = file_with(&folder, "c.png", b"solid");
+    assert_eq!(png::read(&text).expect_err("no PNG").exit_code(), 3);
+    let missing = folder.path().join("missing.png");
+    assert_eq!(png::read(&missing).expect_err("no file").exit_code(), 5);
+    assert!(png::write_grey(&path, &Plane::filled(0, 3, 7)).is_err());
+}
+
+/// The checksum of PNG chunks, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    for &byte in bytes {
+        crc ^= u32::from(byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 {
+                crc >> 1 ^ 0xedb8_8320
+            } else {
+                crc >> 1
+            };
+        }
+    }
+    !crc
+}
+
+#[test]
+fn transparency_is_refused_and_not_ignored() {
+    let folder = folder();
+    let path = folder.path().join("a.png");
+    image::RgbaImage::new(2, 2).save(&path).expect("written");
+    assert_eq!(png::read(&path).expect_err("alpha").exit_code(), 4);
+    image::ImageBuffer::<image::Luma<u16>, _>::new(2, 2)
+        .save(&path)
+        .expect("written");
+    assert_eq!(png::read(&path).expect_err("16 bits").exit_code(), 4);
+}
+
+#[test]
+fn a_report_has_one_form_and_no_infinities() {
+    #[derive(serde::Serialize)]
+    struct Report {
+        schema: u32,
+        rms: f64,
+        psnr: f64,
+        views: Vec<Option<f64>>,
+    }
+    let value = Report {
+        schema: 1,
+        rms: 0.1,
+        psnr: f64::INFINITY,
+        views: vec![None, Some(f64::NAN), Some(1e-7)],
+    };
+    let text = "{\n  \"schema\": 1,\n  \"rms\": 0.1,\n  \"psnr\": null,\n  \"views\": [\n    null,\n    null,\n    \
+                1e-7\n  ]\n}\n";
+    assert_eq!(report::to_text(&value).expect("has a JSON form"), text);
+    let folder = folder();
+    let path = folder.path().join("a.json");
+    report::write(&path, &value).expect("written");
+    assert_eq!(fs::read_to_string(&path).expect("read"), text);
+    let sorted = serde_json::json!({"b": 1, "a": 2});
+    assert_eq!(
+        report::to_text(&sorted).expect("JSON"),
+        "{\n  \"a\": 2,\n  \"b\": 1\n}\n"
+    );
+    let keyless: BTreeMap<[u8; 2], u8> = [([1, 2], 3)].into();
+    assert_eq!(
+        report::to_text(&keyless)
+            .expect_err("no string")
+            .exit_code(),
+        70
+    );
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    let folder = folder();
+    let path = file_with(&folder, "a.txt", b"old");
+    let failed = atomic::write(&path, |file| {
+        file.write_all(b"new")?;
+        Err(std::io::Error::other("disk full"))
+    });
+    assert_eq!(failed.expect_err("failed").exit_code(), 5);
+    assert_eq!(fs::read(&path).expect("read"), b"old");
+    assert_eq!(fs::read_dir(folder.path()).expect("readable").count(), 1);
+}
+
+#[test]
+fn a_label_is_drawn_below_its_picture() {
+    let picture = Plane::filled(30, 4, 50_u8);
+    let tiles = [
+        Tile {
+            picture: &picture,
+            label: "rms 1",
+        },
+        Tile {
+            picture: &picture,
+            label: "",
+        },
+    ];
+    let style = Style {
+        padding: 1,
+        dot: 1,
+        paper: 200,
+        ink: 0,
+    };
+    let drawn = sheet(&tiles, 2, style).expect("small");
+    let rows: Vec<String> = (0..drawn.height())
+        .map(|y| {
+            (0..drawn.width())
+                .map(|x| match drawn.at(x, y) {
+                    0 => '#',
+                    50 => 'o',
+                    _ => ' ',
+                })
+                .collect::<String>()
+                .trim_end()
+                .to_string()
+        })
+        .collect();
+    let both = format!(" {} {}", "o".repeat(30), "o".repeat(30));
+    let mut expected = vec![
+        String::new(),
+        both.clone(),
+        both.clone(),
+        both.clone(),
+        both,
+    ];
+    expected.extend([String::new(), String::new()]);
+    expected.extend(
+        [
+            "                           #",
+            "                          ##",
+            " # ##  ## #   ####         #",
+            " ##    # # # #             #",
+            " #     # # #  ###          #",
+            " #     # # #     #         #",
+            " #     # # # ####         ###",
+            "",
+        ]
+        .map(String::from),
+    );
+    assert_eq!(rows, expected, "\n{}", rows.join("\n"));
+}
+
+#[test]
+fn a_long_label_is_cut_and_does_not_run_into_the_next_picture() {
+    let picture = Plane::filled(20, 3, [9_u8; 3]);
+    let tile = |label| Tile {
+        picture: &picture,
+        label,
+    };
+    let long = sheet(&[tile("abcdefghij"), tile("x")], 2, Style::default()).expect("small");
+    let short = sheet(&[tile("abc"), tile("x")], 2, Style::default()).expect("small");
+    assert_eq!(long, short);
+}
+
+#[test]
+fn a_sheet_that_no_file_could_hold_is_refused() {
+    let picture = Plane::filled(4096, 1, 0_u8);
+    let tiles = [Tile {
+        picture: &picture,
+        label: "",
+    }; 5];
+    assert_eq!(
+        sheet(&tiles, 5, Style::default())
+            .expect_err("too wide")
+            .exit_code(),
+        2
+    );
+    assert!(sheet(&tiles, u32::MAX, Style::default()).is_err());
+    assert!(sheet(&tiles, 2, Style::default()).is_ok());
+    assert!(sheet::<u8>(&[], 1, Style::default()).is_err());
+    assert!(sheet(&tiles, 0, Style::default()).is_err());
+    for dot in [0, u32::MAX] {
+        let style = Style {
+            dot,
+            ..Style::default()
+        };
+        assert!(sheet(&tiles[..1], 1, style).is_err());
+    }
+}
+
+#[test]
+fn a_difference_strip_shows_expected_actual_and_difference_in_this_order() {
+    let expected = Plane::filled(80, 10, 100_u8);
+    let mut actual = expected.clone();
+    actual.values_mut()[0] = 110;
+    let strip = difference_strip(&expected, &actual, 4).expect("same size");
+    let corners = [0, 1, 2].map(|i| strip.at(8 + 88 * i, 8));
+    assert_eq!(corners, [100, 110, 168]);
+    assert_eq!(strip.at(8 + 88 * 2 + 1, 8), 128);
+    let smaller = Plane::filled(8, 10, 100_u8);
+    assert!(difference_strip(&expected, &smaller, 4).is_err());
+}

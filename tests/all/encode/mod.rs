@@ -1,0 +1,3 @@
+//! What is written besides meshes: pictures, arrays, reports, hashes.
+
+mod formats;

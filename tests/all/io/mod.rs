@@ -1,0 +1,5 @@
+//! Mesh files: what survives, what is refused and where.
+
+mod files;
+mod hostile;
+mod readers;

@@ -1,0 +1,5 @@
+//! Meshes: canonical order, findings, generated ones.
+
+mod canonical;
+mod findings;
+mod generate;

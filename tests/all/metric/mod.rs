@@ -1,0 +1,5 @@
+//! Differences between pictures, surfaces, and meshes as they appear.
+
+pub(crate) mod appearance;
+mod pictures;
+mod surface;

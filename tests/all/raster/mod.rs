@@ -1,0 +1,5 @@
+//! The rasterizer and both un-rendering engines against oracles that share no code with them.
+
+mod coverage;
+mod unrender;
+mod zbuffer;

@@ -1,0 +1,375 @@
+//! Incremental pictures against pictures drawn from scratch, over random changes of every kind of mesh and view.
+
+use glam::DVec3;
+use lodmark::{
+    num::fixed::SubpixelBits,
+    raster::{
+        self, Added, BucketEngine, Change, Glance, LayerEngine, Model, Plane, Scene, Unrender,
+    },
+    view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
+};
+use proptest::prelude::*;
+
+/// A mesh under random surgery, kept without any incremental structure.
+#[derive(Clone, Debug)]
+struct Patient {
+    positions: Vec<DVec3>,
+    triangles: Vec<Option<[u32; 3]>>,
+    colors: Option<Vec<[[f64; 3]; 3]>>,
+}
+
+impl Patient {
+    fn scene(&self) -> Scene {
+        let ids: Vec<u32> = (0..self.triangles.len() as u32)
+            .filter(|&t| self.triangles[t as usize].is_some())
+            .collect();
+        let triangles = ids
+            .iter()
+            .map(|&t| self.triangles[t as usize].expect("alive"))
+            .collect();
+        let colors = self
+            .colors
+            .as_ref()
+            .map_or_else(Vec::new, |c| ids.iter().map(|&t| c[t as usize]).collect());
+        Scene::new(self.positions.clone(), triangles, ids).with_colors(colors)
+    }
+}
+
+/// One step of surgery.
+#[derive(Clone, Debug)]
+enum Step {
+    /// One vertex of a triangle becomes another, which moves: what a collapse does, with no regard to legality.
+    Collapse(prop::sample::Index, u8, DVec3),
+    /// A vertex moves.
+    Move(prop::sample::Index, DVec3),
+    /// A triangle disappears.
+    Remove(prop::sample::Index),
+    /// A triangle turns over.
+    Turn(prop::sample::Index),
+}
+
+/// Mostly inside the unit ball; sometimes outside the frame, behind the eye, or on a coarse grid with ties of depth.
+fn position() -> impl Strategy<Value = DVec3> {
+    let triple = |range: std::ops::Range<f64>| {
+        (range.clone(), range.clone(), range).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    };
+    prop_oneof![
+        6 => triple(-0.6..0.6),
+        3 => (-3..=3_i32, -3..=3_i32, -3..=3_i32)
+            .prop_map(|(x, y, z)| DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * 0.25),
+        1 => triple(-3.0..3.0),
+        1 => triple(-400.0..400.0),
+    ]
+}
+
+/// Soups that share vertices: open, non-manifold, with duplicate and degenerate faces, all of them often.
+fn patient() -> impl Strategy<Value = Patient> {
+    (
+        proptest::collection::vec(position(), 4..14),
+        proptest::collection::vec(any::<[prop::sample::Index; 3]>(), 1..24),
+        proptest::option::weighted(0.3, Just(())),
+    )
+        .prop_map(|(positions, triangles, colored)| {
+            let triangles: Vec<_> = triangles
+                .iter()
+                .map(|t| Some(t.map(|i| i.index(positions.len()) as u32)))
+                .collect();
+            let colors = colored.map(|()| {
+                (0..triangles.len() as u32)
+                    .map(|t| {
+                        std::array::from_fn(|k| {
+                            std::array::from_fn(|c| {
+                                f64::from((t * 7 + k as u32 * 3 + c as u32 * 5) % 11) / 10.0
+                            })
+                        })
+                    })
+                    .collect()
+            });
+            Patient {
+                positions,
+                triangles,
+                colors,
+            }
+        })
+}
+
+fn step() -> impl Strategy<Value = Step> {
+    prop_oneof![
+        4 => (any::<prop::sample::Index>(), 0..3_u8, position()).prop_map(|(t, k, p)| Step::Collapse(t, k, p)),
+        1 => (any::<prop::sample::Index>(), position()).prop_map(|(v, p)| Step::Move(v, p)),
+        1 => any::<prop::sample::Index>().prop_map(Step::Remove),
+        1 => any::<prop::sample::Index>().prop_map(Step::Turn),
+    ]
+}
+
+fn shading() -> impl Strategy<Value = Shading> {
+    let specular = prop_oneof![
+        Just(None),
+        Just(Some(Specular {
+            strength: 0.4,
+            exponent: 9
+        }))
+    ];
+    let interpolation = prop_oneof![Just(Interpolation::Flat), Just(Interpolation::Gouraud)];
+    (interpolation, any::<bool>(), specular).prop_map(|(interpolation, two_sided, specular)| {
+        Shading {
+            interpolation,
+            two_sided,
+            specular,
+        }
+    })
+}
+
+/// Perspective from outside and from inside the mesh (near-clipped), orthographic; all culls and lights.
+fn view() -> impl Strategy<Value = View> {
+    let sphere = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.7,
+    };
+    let place = (0..20_usize, 0..4_u8).prop_filter_map("a camera", move |(i, kind)| {
+        let direction = DVec3::new(1.0, 0.3, -0.2) * (i as f64 - 9.5)
+            + DVec3::new(-0.4, 1.0, 0.7 * (i % 3) as f64);
+        let size = [32, 24];
+        match kind {
+            0 | 1 => View::around(&sphere, direction, [i, 20], size, Projection::Perspective),
+            2 => View::around(&sphere, direction, [i, 20], size, Projection::Orthographic),
+            _ => View::perspective(
+                [
+                    DVec3::new(0.01, 0.02, 0.03),
+                    direction,
+                    DVec3::new(0.1, 0.9, -0.3),
+                ],
+                [0.05, 2.0],
+                size,
+            ),
+        }
+    });
+    let cull = prop_oneof![Just(Cull::None), Just(Cull::Back), Just(Cull::Front)];
+    let light = prop_oneof![
+        3 => Just(Light::Headlight),
+        1 => Just(Light::Point(DVec3::new(0.0, 2.0, 0.5))),
+        1 => Just(Light::Direction(DVec3::new(0.6, 0.0, 0.8))),
+    ];
+    (place, shading(), cull, light).prop_map(|(view, shading, cull, light)| View {
+        shading,
+        cull,
+        light,
+        ..view
+    })
+}
+
+fn views() -> impl Strategy<Value = ViewSet> {
+    let bits = prop_oneof![Just(SubpixelBits::Eight), Just(SubpixelBits::Sixteen)];
+    let samples = prop_oneof![2 => Just(1), 1 => Just(2), 1 => Just(4)];
+    (proptest::collection::vec(view(), 1..4), bits, samples).prop_map(
+        |(views, subpixel, samples)| ViewSet {
+            width: 32 / samples,
+            height: 24 / samples,
+            samples,
+            subpixel,
+            background: 128,
+            views,
+        },
+    )
+}
+
+/// The mesh after a step, and the step as the engines see it: everything that differs, found by comparing.
+fn operate(before: &Patient, step: &Step) -> Option<Patient> {
+    let mut after = before.clone();
+    let alive = |i: &prop::sample::Index| {
+        let ids: Vec<usize> = (0..before.triangles.len())
+            .filter(|&t| before.triangles[t].is_some())
+            .collect();
+        (!ids.is_empty()).then(|| *i.get(&ids))
+    };
+    match step {
+        Step::Collapse(t, k, p) => {
+            let corners = before.triangles[alive(t)?]?;
+            let (u, w) = (corners[*k as usize], corners[(*k as usize + 1) % 3]);
+            if u == w {
+                return None;
+            }
+            after.positions[u as usize] = *p;
+            for corners in &mut after.triangles {
+                if corners.is_some_and(|c| c.contains(&u) && c.contains(&w)) {
+                    *corners = None;
+                }
+                if let Some(c) = corners {
+                    c.iter_mut().filter(|v| **v == w).for_each(|v| *v = u);
+                }
+            }
+        }
+        Step::Move(v, p) => after.positions[v.index(before.positions.len())] = *p,
+        Step::Remove(t) => after.triangles[alive(t)?] = None,
+        Step::Turn(t) => after.triangles[alive(t)?].as_mut()?.swap(0, 1),
+    }
+    Some(after)
+}
+
+struct Difference {
+    removed: Vec<u32>,
+    added: Vec<Added>,
+    moved: Vec<(u32, DVec3)>,
+    normals: Vec<(u32, DVec3)>,
+}
+
+fn difference(before: &Patient, after: &Patient, gouraud: bool) -> Difference {
+    let vertices = 0..before.positions.len() as u32;
+    let moved: Vec<(u32, DVec3)> = vertices
+        .clone()
+        .filter(|&v| before.positions[v as usize] != after.positions[v as usize])
+        .map(|v| (v, after.positions[v as usize]))
+        .collect();
+    let (old, new) = (before.scene(), after.scene());
+    let normals: Vec<(u32, DVec3)> = vertices
+        .filter(|&v| gouraud && old.normals()[v as usize] != new.normals()[v as usize])
+        .map(|v| (v, new.normals()[v as usize]))
+        .collect();
+    let touched = |corners: Option<[u32; 3]>| {
+        corners.is_some_and(|c| {
+            c.iter()
+                .any(|v| moved.iter().any(|m| m.0 == *v) || normals.iter().any(|n| n.0 == *v))
+        })
+    };
+    let mut found = Difference {
+        removed: Vec::new(),
+        added: Vec::new(),
+        moved: moved.clone(),
+        normals: normals.clone(),
+    };
+    for (t, (&a, &b)) in before.triangles.iter().zip(&after.triangles).enumerate() {
+        if a != b || touched(a) || touched(b) {
+            if a.is_some() {
+                found.removed.push(t as u32);
+            }
+            if let Some(corners) = b {
+                found.added.push(Added {
+                    id: t as u32,
+                    corners,
+                    colors: after.colors.as_ref().map_or([[0.0; 3]; 3], |c| c[t]),
+                });
+            }
+        }
+    }
+    found
+}
+
+proptest! {
+    #![proptest_config(crate::support::cases(1000))]
+
+    #[test]
+    fn incremental_pictures_equal_pictures_drawn_from_scratch(
+        start in patient(),
+        set in views(),
+        steps in proptest::collection::vec(step(), 1..12),
+    ) {
+        let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        let reference: Vec<Plane<u16>> =
+            set.views.iter().map(|v| raster::luma_sums(&start.scene(), v, &set)).collect();
+        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut scratches = (buckets.scratch(), layers.scratch());
+        let mut now = start;
+        let mut error = 0_i64;
+        for step in &steps {
+            let Some(after) = operate(&now, step) else { continue };
+            let d = difference(&now, &after, gouraud);
+            let change =
+                Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
+            let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
+            let costs = [
+                buckets.evaluate(&change, Glance::Whole, &mut scratches.0),
+                layers.evaluate(&change, Glance::Whole, &mut scratches.1),
+            ];
+            let committed = buckets.commit(&change, &mut scratches.0);
+            prop_assert_eq!(layers.commit(&change, &mut scratches.1), committed);
+            prop_assert_eq!(costs, [committed; 2]);
+            error += committed;
+            let mut scratch_error = 0;
+            for (i, view) in set.views.iter().enumerate() {
+                let fresh = raster::luma(&after.scene(), view, &set);
+                prop_assert_eq!(&fresh.keys, &buckets.keys(i));
+                prop_assert_eq!(&fresh.keys, &layers.keys(i));
+                prop_assert_eq!(&fresh.tones, &buckets.luma(i));
+                prop_assert_eq!(&fresh.tones, &layers.luma(i));
+                let sums = raster::luma_sums(&after.scene(), view, &set);
+                scratch_error +=
+                    sums.values().iter().zip(reference[i].values()).map(|(&y, &y0)| square(y0, y)).sum::<i64>();
+            }
+            prop_assert_eq!(error, scratch_error);
+            now = after;
+        }
+    }
+
+    #[test]
+    fn a_glance_costs_what_the_views_that_it_sees_cost(
+        start in patient(),
+        own in views(),
+        more in proptest::collection::vec(view(), 12),
+        step in step(),
+        every in 0..6_u32,
+    ) {
+        // So many views that the layers engine divides them among threads.
+        let set = ViewSet { views: more, ..own };
+        let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        let Some(after) = operate(&start, &step) else { return Ok(()) };
+        let d = difference(&start, &after, gouraud);
+        let change = Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
+        let [before, sums] = [&start, &after].map(|patient| {
+            let sums = set.views.iter().map(|v| raster::luma_sums(&patient.scene(), v, &set));
+            sums.collect::<Vec<Plane<u16>>>()
+        });
+        // The reference is the picture before: what a change costs is how far it leads away.
+        let costs: Vec<i64> = before.iter().zip(&sums).map(|(y0, y)| {
+            let pairs = y0.values().iter().zip(y.values());
+            pairs.map(|(&y0, &y)| (i64::from(y0) - i64::from(y)).pow(2)).sum()
+        }).collect();
+        let seen = |i: usize| every < 2 || i.is_multiple_of(every as usize);
+        let sum = |wanted: bool| -> i64 {
+            let views = costs.iter().enumerate().filter(|(i, _)| seen(*i) == wanted);
+            views.map(|(_, cost)| cost).sum()
+        };
+        let model = || Model::new(&start.scene(), &set);
+        let buckets = BucketEngine::new(model(), &set, before.clone());
+        let layers = LayerEngine::new(model(), &set, before.clone());
+        let mut scratches = (buckets.scratch(), layers.scratch(), layers.lone_scratch());
+        // After a look at many pixels a lone one is shared among threads.
+        for (glance, expected) in [
+            (Glance::Whole, costs.iter().sum()),
+            (Glance::Part(every), sum(true)),
+            (Glance::Whole, costs.iter().sum()),
+            (Glance::Rest(every), sum(false)),
+        ] {
+            prop_assert_eq!(buckets.evaluate(&change, glance, &mut scratches.0), expected);
+            prop_assert_eq!(layers.evaluate(&change, glance, &mut scratches.1), expected);
+            prop_assert_eq!(layers.evaluate(&change, glance, &mut scratches.2), expected);
+        }
+    }
+
+    #[test]
+    fn no_order_of_triangles_and_no_rotation_changes_a_picture(
+        start in patient(),
+        set in views(),
+        shuffle in any::<u64>(),
+    ) {
+        let ids: Vec<u32> = (0..start.triangles.len() as u32).collect();
+        let mut order = ids.clone();
+        order.sort_by_key(|&t| (u64::from(t) + 1).wrapping_mul(shuffle | 1) >> 7);
+        let turn = |t: u32| (shuffle >> (t % 60)) as usize % 3;
+        let triangles = order.iter().map(|&t| {
+            let mut c = start.triangles[t as usize].expect("all alive");
+            c.rotate_left(turn(t));
+            c
+        }).collect();
+        let colors = start.colors.as_ref().map_or_else(Vec::new, |c| order.iter().map(|&t| {
+            let mut c = c[t as usize];
+            c.rotate_left(turn(t));
+            c
+        }).collect());
+        let shuffled = Scene::new(start.positions.clone(), triangles, order.clone()).with_colors(colors);
+        for view in &set.views {
+            let (a, b) = (raster::rgb(&start.scene(), view, &set), raster::rgb(&shuffled, view, &set));
+            prop_assert_eq!(a, b);
+        }
+    }
+}

@@ -1,0 +1,518 @@
+//! Billboard clouds: no viewer sees a point displaced by more than the angle, nothing is lost, nothing depends on
+//! threads, and what cannot be done is said.
+
+#![allow(
+    clippy::disallowed_methods,
+    clippy::float_cmp,
+    clippy::print_stdout,
+    reason = "what is held against the crate's math must not use it; exact results are exact; cases are counted aloud"
+)]
+
+mod borders;
+mod command;
+mod measured;
+
+use glam::{DVec2, DVec3};
+use lodmark::{
+    Silent,
+    bound::{cell::ViewCell, planar::Aperture},
+    mesh::{
+        Mesh,
+        generate::{self, Pcg32},
+    },
+    simplify::billboards::{Cloud, Limit, Options, Quad, Up, billboards},
+};
+
+fn within(degrees: f64) -> Options {
+    let aperture = Aperture::degrees(degrees).expect("below 90");
+    Options {
+        directions: 60,
+        texels: 128,
+        ..Options::within(Limit::Angle(aperture))
+    }
+}
+
+fn before_the_city() -> ViewCell {
+    ViewCell::half_space(DVec3::new(0.0, -6.0, 0.0), DVec3::Y).expect("a normal")
+}
+
+fn in_the_forest() -> ViewCell {
+    ViewCell::segment([DVec3::new(-10.0, 0.0, 0.0), DVec3::new(10.0, 0.0, 0.0)])
+        .expect("two points")
+}
+
+fn cloud(mesh: &Mesh, cell: &ViewCell, options: &Options) -> Cloud {
+    billboards(mesh, cell, options, &Silent).expect("a cloud")
+}
+
+/// So many buildings of the city.
+fn blocks(count: usize) -> Mesh {
+    let city = generate::city();
+    let corners = (0..10 * count).flat_map(|t| city.corners(t)).collect();
+    let triangles = (0..10 * count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    Mesh::from_triangles(corners, triangles.collect()).expect("triangles of the city")
+}
+
+/// The angle across the horizon.
+fn angle(v: DVec2, a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = (a.truncate() - v, b.truncate() - v);
+    (a.x * b.y - a.y * b.x).abs().atan2(a.x * b.x + a.y * b.y)
+}
+
+/// Plan viewpoints: the border of a cell, finely.
+fn viewers(cell: &str) -> Vec<DVec2> {
+    let side = |a: DVec2, b: DVec2| (0..=60).map(move |i| a + (b - a) * (f64::from(i) / 60.0));
+    match cell {
+        "half-space" => (-400..=400)
+            .map(|i| {
+                DVec2::new(
+                    25.0 + 30.0 * (f64::from(i) / 402.0 * std::f64::consts::FRAC_PI_2).tan(),
+                    -6.0,
+                )
+            })
+            .collect(),
+        "segment" => side(DVec2::new(-10.0, 0.0), DVec2::new(10.0, 0.0)).collect(),
+        _ => {
+            let c = [[-9.0, -12.0], [9.0, -12.0], [9.0, -4.0], [-9.0, -4.0]].map(DVec2::from_array);
+            (0..4).flat_map(|i| side(c[i], c[(i + 1) % 4])).collect()
+        }
+    }
+}
+
+fn sampled(mesh: &Mesh, t: u32, random: &mut Pcg32, count: usize) -> Vec<DVec3> {
+    let [a, b, c] = mesh.corners(t as usize);
+    let mut points = vec![a, b, c];
+    for _ in 0..count {
+        let (s, t) = (random.unit(), random.unit());
+        let (s, t) = if s + t > 1.0 {
+            (1.0 - s, 1.0 - t)
+        } else {
+            (s, t)
+        };
+        points.push(a + (b - a) * s + (c - a) * t);
+    }
+    points
+}
+
+#[test]
+fn a_viewer_sees_a_point_displaced_by_more_than_the_angle() {
+    let mut random = Pcg32::new(2007, 400);
+    let around =
+        ViewCell::cuboid(DVec3::new(-9.0, -12.0, 0.0), DVec3::new(9.0, -4.0, 3.0)).expect("a box");
+    let scenes = [
+        ("half-space", before_the_city(), blocks(60), 0.3),
+        ("segment", in_the_forest(), generate::trees(400, 120.0), 0.5),
+        ("box", around, blocks(60), 1.0),
+    ];
+    for (name, cell, mesh, degrees) in scenes {
+        let cloud = cloud(&mesh, &cell, &within(degrees));
+        let theta = degrees.to_radians();
+        let (mut worst, mut shared, mut slanted) = (0.0_f64, 0, 0);
+        for quad in cloud.quads.iter().filter(|q| !q.horizontal) {
+            shared += usize::from(quad.replaces.len() > 2);
+            slanted += usize::from(quad.replaces.len() > 2 && quad.along != quad.axes[2]);
+            // Everything that is drawn, not only what is replaced.
+            for &t in &quad.drawn {
+                for p in sampled(&mesh, t, &mut random, 2) {
+                    let s = quad.project(p);
+                    for &v in &viewers(name) {
+                        worst = worst.max(angle(v, p, s));
+                    }
+                }
+            }
+        }
+        assert!(worst <= theta * (1.0 + 1e-9), "{name}: {worst} > {theta}");
+        assert!(
+            worst > theta * 0.4 && shared > 3,
+            "{name}: {worst} of {theta}, {shared} shared planes"
+        );
+        assert!(slanted > 3 || name != "segment", "{slanted} slanted planes");
+        let claimed = cloud.displacement.horizontal;
+        assert!(
+            claimed <= theta * (1.0 + 1e-9) && claimed > 0.4 * theta,
+            "{name}: {claimed}"
+        );
+    }
+}
+
+#[test]
+fn a_texel_shows_a_point_that_belongs_elsewhere() {
+    let cell = in_the_forest();
+    let mesh = generate::trees(300, 100.0);
+    let cloud = cloud(&mesh, &cell, &within(0.5));
+    let theta = 0.5_f64.to_radians();
+    let (mut opaque, mut empty, mut slanted) = (0, 0, 0);
+    for quad in cloud.quads.iter().filter(|q| q.drawn.len() > 2).take(12) {
+        slanted += usize::from(quad.along.dot(quad.axes[2]) < 0.97);
+        let texture = quad.texture(&mesh);
+        assert_eq!([texture.width(), texture.height()], quad.texels);
+        for y in (0..texture.height()).step_by(3) {
+            for x in (0..texture.width()).step_by(3) {
+                let at = place(quad, f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let shown: Vec<DVec3> = quad
+                    .drawn
+                    .iter()
+                    .filter_map(|&t| behind(mesh.corners(t as usize), at, quad.along))
+                    .collect();
+                if texture.at(x, y)[3] == 0 {
+                    empty += 1;
+                    // A triangle may miss the centre of a texel by the grid of the rasterizer only.
+                    let inner =
+                        [(0.4, 0.4), (0.6, 0.4), (0.4, 0.6), (0.6, 0.6)]
+                            .iter()
+                            .all(|&(u, v)| {
+                                let near = place(quad, f64::from(x) + u, f64::from(y) + v);
+                                quad.drawn.iter().any(|&t| {
+                                    behind(mesh.corners(t as usize), near, quad.along).is_some()
+                                })
+                            });
+                    assert!(!inner, "a covered texel at {x}, {y} is transparent");
+                    continue;
+                }
+                opaque += 1;
+                for p in shown {
+                    for &v in viewers("segment").iter().step_by(6) {
+                        let seen = angle(v, p, at);
+                        assert!(seen <= theta * (1.0 + 1e-9), "{seen} > {theta} at {x}, {y}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(opaque > 300 && empty > 300, "{opaque} {empty}");
+    assert!(slanted > 2, "{slanted} slanted quads");
+}
+
+/// A point of a quad by column and row, in texels.
+fn place(quad: &Quad, x: f64, y: f64) -> DVec3 {
+    let [right, up, _] = quad.axes;
+    let (u, v) = (
+        x / f64::from(quad.texels[0]),
+        1.0 - y / f64::from(quad.texels[1]),
+    );
+    quad.corner + right * (u * quad.size[0]) + up * (v * quad.size[1])
+}
+
+/// Where the line through `at` along `axis` meets a triangle.
+fn behind([a, b, c]: [DVec3; 3], at: DVec3, axis: DVec3) -> Option<DVec3> {
+    let normal = (b - a).cross(c - a);
+    let steep = normal.dot(axis);
+    if steep.abs() < 1e-9 * normal.length() {
+        return None;
+    }
+    let p = at + axis * ((a - at).dot(normal) / steep);
+    let inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|&(e, f)| (f - e).cross(p - e).dot(normal) >= 0.0);
+    inside.then_some(p)
+}
+
+#[test]
+fn a_triangle_is_lost_or_shown_by_two_quads_for_its_own() {
+    let around =
+        ViewCell::cuboid(DVec3::new(1.0, 1.0, 0.0), DVec3::new(3.0, 9.0, 3.0)).expect("a box");
+    for (mesh, cell) in [
+        (blocks(45), before_the_city()),
+        (blocks(45), around),
+        (generate::trees(200, 60.0), in_the_forest()),
+        (
+            generate::icosphere(2),
+            ViewCell::point(DVec3::new(4.0, 0.0, 0.0)).expect("a point"),
+        ),
+        (
+            generate::icosphere(2),
+            ViewCell::point(DVec3::new(0.1, 0.0, 0.0)).expect("a point"),
+        ),
+    ] {
+        let cloud = cloud(&mesh, &cell, &within(0.5));
+        let mut count = vec![0; mesh.triangles().len()];
+        let replaced = cloud.quads.iter().flat_map(|q| &q.replaces);
+        for &t in replaced.chain(&cloud.kept) {
+            count[t as usize] += 1;
+        }
+        assert!(count.iter().all(|&n| n == 1), "{count:?}");
+        for quad in &cloud.quads {
+            assert!(quad.replaces.iter().all(|t| quad.drawn.contains(t)));
+            let [right, up, back] = quad.axes;
+            assert!((right.cross(up) - back).length() < 1e-12);
+            assert!((quad.along.length() - 1.0).abs() < 1e-12 && quad.along.dot(back) > 0.1);
+            for &t in &quad.replaces {
+                for p in mesh.corners(t as usize) {
+                    let on = quad.project(p) - quad.corner;
+                    let (x, y) = (on.dot(right), on.dot(up));
+                    let inside = |x: f64, side: f64| (-1e-9..=side + 1e-9).contains(&x);
+                    assert!(inside(x, quad.size[0]) && inside(y, quad.size[1]));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_city_needs_more_quads_than_the_published_one() {
+    let aperture = Aperture::degrees(0.1).expect("below 90");
+    let mut options = Options::within(Limit::Angle(aperture));
+    let city = generate::city();
+    assert_eq!(city.triangles().len(), 4200);
+    let cloud = cloud(&city, &before_the_city(), &options);
+    let vertical = cloud.quads.iter().filter(|q| !q.horizontal).count();
+    assert!(vertical <= 100, "{vertical} quads for facades");
+    options.any_height = true;
+    let flattened = self::cloud(&city, &before_the_city(), &options);
+    assert!(
+        flattened.quads.len() <= 115,
+        "{} quads",
+        flattened.quads.len()
+    );
+    assert!(flattened.kept.is_empty() && cloud.kept.is_empty());
+    let vertical_errors = (cloud.displacement.vertical, flattened.displacement.vertical);
+    assert!(
+        vertical_errors.0 < 0.3_f64.to_radians() && vertical_errors.1 > 0.1,
+        "{vertical_errors:?}"
+    );
+}
+
+#[test]
+fn without_tolerance_anything_is_displaced() {
+    let mesh = blocks(30);
+    let cloud = cloud(&mesh, &before_the_city(), &within(0.0));
+    for quad in &cloud.quads {
+        for &t in &quad.replaces {
+            for p in mesh.corners(t as usize) {
+                assert!((quad.project(p) - p).length() < 1e-12, "{p} moves");
+            }
+        }
+    }
+    assert!(
+        cloud.kept.is_empty() && cloud.quads.len() < 150,
+        "{}",
+        cloud.quads.len()
+    );
+    assert!(cloud.displacement.horizontal < 1e-9);
+}
+
+#[test]
+fn a_wide_angle_is_refused_or_needs_more_quads() {
+    let mesh = blocks(30);
+    let counts =
+        [0.1, 1.0, 10.0, 89.0].map(|t| cloud(&mesh, &before_the_city(), &within(t)).quads.len());
+    assert!(
+        counts.is_sorted_by(|a, b| a >= b) && counts[3] <= 4,
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn what_viewers_stand_in_is_moved() {
+    let mesh = blocks(10);
+    let cell =
+        ViewCell::cuboid(DVec3::new(-1.0, 0.5, 0.0), DVec3::new(0.8, 0.9, 2.0)).expect("a box");
+    let cloud = cloud(&mesh, &cell, &within(1.0));
+    // The wall at x = 0 and the roof of the first building.
+    assert!(cloud.kept.len() >= 2, "{:?}", cloud.kept);
+    for &t in &cloud.kept {
+        assert!(t < 10, "triangle {t} of another building is kept");
+    }
+    // Viewers right on a wall: it stays in its plane.
+    let on_wall = ViewCell::segment([DVec3::new(0.2, 0.0, 1.0), DVec3::new(0.6, 0.0, 1.0)])
+        .expect("two points");
+    let cloud = self::cloud(&mesh, &on_wall, &within(1.0));
+    assert!(
+        cloud.displacement.horizontal <= 1.0_f64.to_radians() * (1.0 + 1e-9),
+        "{:?}",
+        cloud.displacement
+    );
+}
+
+#[test]
+fn a_slope_over_viewers_without_a_width_is_moved_through_them() {
+    let plate = |z: [f64; 4]| {
+        let at = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let corners = (0..4).map(|i| DVec3::new(at[i][0], at[i][1], z[i]));
+        Mesh::from_triangles(corners.collect(), vec![[0, 1, 2], [0, 2, 3]]).expect("valid")
+    };
+    let cells = [
+        ViewCell::segment([DVec3::new(-0.3, 0.1, 0.0), DVec3::new(0.4, 0.2, 0.0)]).expect("two"),
+        ViewCell::line(DVec3::new(0.0, 0.3, 0.0), DVec3::X).expect("a direction"),
+        ViewCell::point(DVec3::new(0.2, 0.1, 0.0)).expect("finite"),
+        ViewCell::point(DVec3::new(1.0, 0.5, 0.0)).expect("finite"),
+    ];
+    for cell in &cells {
+        for z in [[1.0, 1.0, 2.0, 2.0], [1.0, 1.5, 1.25, 3.0]] {
+            for degrees in [1.0, 89.9999] {
+                let cloud = cloud(&plate(z), cell, &within(degrees));
+                assert!(
+                    cloud.displacement.horizontal <= f64::to_radians(degrees) * (1.0 + 1e-9),
+                    "{cell:?}, {degrees}: {:?}",
+                    cloud.displacement
+                );
+                assert!(!cloud.kept.is_empty(), "{cell:?}, {degrees}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cell_that_covers_the_ground_is_taken() {
+    let mesh = blocks(2);
+    let above = ViewCell::half_space(DVec3::new(0.0, 0.0, 20.0), DVec3::new(0.0, 0.0, -1.0))
+        .expect("a normal");
+    let slanted = ViewCell::plane(DVec3::ZERO, DVec3::new(0.0, 1.0, 0.2)).expect("a normal");
+    for cell in [above, slanted] {
+        let error =
+            billboards(&mesh, &cell, &within(1.0), &Silent).expect_err("viewers everywhere");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("covers the ground"), "{error}");
+    }
+    for (directions, texels) in [(0, 10), (5000, 10), (10, 0), (10, 5000)] {
+        let options = Options {
+            directions,
+            texels,
+            ..within(1.0)
+        };
+        let error =
+            billboards(&mesh, &before_the_city(), &options, &Silent).expect_err("out of range");
+        assert_eq!(error.exit_code(), 2);
+    }
+    let options = Options {
+        limit: Limit::Distance(f64::NAN),
+        ..within(1.0)
+    };
+    assert!(billboards(&mesh, &before_the_city(), &options, &Silent).is_err());
+}
+
+#[test]
+fn a_face_without_area_ends_the_run() {
+    let positions = [
+        [0.0, 5.0, 0.0],
+        [0.0, 5.0, 1.0],
+        [0.0, 5.0, 2.0],
+        [1.0, 5.0, 0.0],
+        [2.0, 5.0, 0.0],
+        [2.0, 6.0, 0.0],
+    ];
+    let mesh = Mesh::from_triangles(
+        positions.map(DVec3::from_array).to_vec(),
+        // A vertical needle, a point, a line on the ground, a real one.
+        vec![[0, 1, 2], [0, 0, 0], [0, 3, 4], [3, 4, 5], [0, 1, 3]],
+    )
+    .expect("indices");
+    for degrees in [0.0, 0.1, 5.0] {
+        let cloud = cloud(&mesh, &before_the_city(), &within(degrees));
+        let replaced: usize = cloud.quads.iter().map(|q| q.replaces.len()).sum();
+        assert_eq!(replaced + cloud.kept.len(), 5);
+        assert!(
+            cloud
+                .quads
+                .iter()
+                .all(|q| q.size[0] > 0.0 && q.size[1] > 0.0)
+        );
+        for quad in &cloud.quads {
+            let _ = quad.texture(&mesh);
+        }
+    }
+    let empty = cloud(&Mesh::default(), &before_the_city(), &within(0.1));
+    assert!(empty.quads.is_empty() && empty.kept.is_empty());
+}
+
+#[test]
+fn the_number_of_threads_changes_a_cloud() {
+    let mesh = generate::trees(500, 150.0);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
+        pool.install(|| cloud(&mesh, &in_the_forest(), &within(0.2)))
+    };
+    let one = on(1);
+    assert_eq!(one, on(3));
+    assert!(one.quads.iter().any(|q| q.replaces.len() > 6));
+}
+
+#[test]
+fn another_axis_up_gives_another_cloud() {
+    let mesh = blocks(20);
+    let turned = |turn: fn(DVec3) -> DVec3| {
+        Mesh::from_triangles(
+            mesh.positions().iter().map(|&p| turn(p)).collect(),
+            mesh.triangles().to_vec(),
+        )
+        .expect("the same triangles")
+    };
+    let z = cloud(&mesh, &before_the_city(), &within(0.3));
+    for (up, turn) in [
+        (Up::X, (|p| DVec3::new(p.z, p.x, p.y)) as fn(DVec3) -> DVec3),
+        (Up::Y, |p| DVec3::new(p.y, p.z, p.x)),
+    ] {
+        let cell = ViewCell::half_space(turn(DVec3::new(0.0, -6.0, 0.0)), turn(DVec3::Y))
+            .expect("a normal");
+        let options = Options { up, ..within(0.3) };
+        let other = cloud(&turned(turn), &cell, &options);
+        assert_eq!(other.quads.len(), z.quads.len());
+        for (a, b) in z.quads.iter().zip(&other.quads) {
+            assert_eq!(
+                (turn(a.corner), a.size, &a.replaces, &a.drawn),
+                (b.corner, b.size, &b.replaces, &b.drawn)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_distance_displaces_by_more() {
+    let mesh = blocks(60);
+    let options = Options {
+        limit: Limit::Distance(0.02),
+        ..within(1.0)
+    };
+    let cloud = cloud(&mesh, &before_the_city(), &options);
+    for quad in &cloud.quads {
+        for &t in &quad.replaces {
+            for p in mesh.corners(t as usize) {
+                assert!((quad.project(p) - p).length() <= 0.02 + 1e-12);
+            }
+        }
+    }
+    assert!(cloud.quads.iter().any(|q| q.replaces.len() > 2));
+}
+
+#[test]
+fn three_walls_at_one_edge_are_taken_for_a_surface() {
+    // A non-manifold edge, a wall that stands twice in the mesh, and one turned the other way.
+    let positions = [
+        [0.0, 5.0, 0.0],
+        [0.0, 5.0, 2.0],
+        [2.0, 5.0, 0.0],
+        [-2.0, 5.0, 0.0],
+        [0.0, 7.0, 0.0],
+        [0.5, 5.0, 2.0],
+    ];
+    let mesh = Mesh::from_triangles(
+        positions.map(DVec3::from_array).to_vec(),
+        vec![
+            [0, 2, 1],
+            [0, 1, 3],
+            [0, 4, 1],
+            [0, 2, 1],
+            [0, 1, 2],
+            [1, 2, 5],
+        ],
+    )
+    .expect("indices");
+    for degrees in [0.0, 0.2, 30.0] {
+        let cloud = cloud(&mesh, &before_the_city(), &within(degrees));
+        let mut shown: Vec<u32> = cloud
+            .quads
+            .iter()
+            .flat_map(|q| q.replaces.clone())
+            .collect();
+        shown.extend(&cloud.kept);
+        shown.sort_unstable();
+        assert_eq!(shown, [0, 1, 2, 3, 4, 5], "{degrees}");
+        // The walls along the street are in one plane, the third stands across.
+        assert!(cloud.kept.is_empty() && cloud.quads.len() <= 2, "{degrees}");
+        let claimed = cloud.displacement.horizontal.to_degrees();
+        assert!(claimed <= degrees + 1e-9, "{claimed} of {degrees}");
+    }
+}

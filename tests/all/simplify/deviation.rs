@@ -1,0 +1,174 @@
+//! Polishing in which the surface has a say: what a change costs in pictures it must bring back in distance.
+
+use std::collections::VecDeque;
+
+use glam::DVec3;
+use lodmark::{
+    Error, Silent,
+    collapse::{LiveMesh, Observer, Patch},
+    mesh::{Mesh, generate},
+    metric::{Proximity, closest_point},
+    num::math,
+    raster::LayerEngine,
+    simplify::{
+        Amount, MethodOptions, Options,
+        image::{Deviation, Limits, Pictures, Polish, polish},
+        simplify,
+    },
+    view::{Sphere, ViewSet, frame_of},
+};
+
+use crate::{
+    simplify::image::error, simplify::image::reference, simplify::image::view_sets,
+    simplify::polish::pushed,
+};
+
+/// Vertices searched against the same pictures: a change is weighed by the error of one of so many moments before.
+const BATCH: usize = 16;
+
+fn faces(mesh: &Mesh) -> Vec<[DVec3; 3]> {
+    (0..mesh.triangles().len())
+        .map(|t| mesh.corners(t))
+        .collect()
+}
+
+/// Area times mean distance of centroid and midpoints from the nearest of all faces.
+fn deviation(original: &[[DVec3; 3]], mesh: &Mesh) -> f64 {
+    let distance = |p: DVec3| {
+        let squared = original.iter().map(|f| closest_point(p, *f).1);
+        math::sqrt(squared.fold(f64::INFINITY, f64::min))
+    };
+    let of = |[a, b, c]: [DVec3; 3]| {
+        let area = (b - a).cross(c - a).length() / 2.0;
+        let points = [
+            (a + b + c) / 3.0,
+            (a + b) / 2.0,
+            (b + c) / 2.0,
+            (c + a) / 2.0,
+        ];
+        area * points.map(distance).iter().sum::<f64>() / 4.0
+    };
+    faces(mesh).into_iter().map(of).sum()
+}
+
+/// Judges every change by drawing everything and measuring every distance.
+struct Judge<'a> {
+    original: &'a Mesh,
+    faces: &'a [[DVec3; 3]],
+    set: &'a ViewSet,
+    weight: f64,
+    falling: bool,
+    total: f64,
+    last: f64,
+    sums: VecDeque<i64>,
+    for_the_surface: usize,
+}
+
+impl Observer for Judge<'_> {
+    fn committed(&mut self, live: &LiveMesh, _: &Patch) {
+        let now = live.to_mesh().expect("valid").enter_frame(live.frame());
+        let (sum, deviation) = (
+            error(self.original, &now, self.set),
+            deviation(self.faces, &now),
+        );
+        let cost = sum - self.sums.back().expect("one");
+        let added = deviation - self.last;
+        assert!(cost <= 0 || !self.falling, "{cost} under a limit");
+        if cost >= 0 {
+            let largest = *self.sums.iter().max().expect("one") as f64;
+            let balance = cost as f64 * self.total + self.weight * largest * added;
+            assert!(added < 0.0 && balance < 0.0, "{cost} for {added}");
+            self.for_the_surface += 1;
+        }
+        self.last = deviation;
+        self.sums.push_back(sum);
+        if self.sums.len() > BATCH {
+            self.sums.pop_front();
+        }
+    }
+}
+
+#[test]
+fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
+    let mut for_the_surface = 0;
+    for mesh in [generate::torus(1.0, 0.4, 10, 6), generate::icosphere(1)] {
+        let frame = frame_of(&mesh);
+        let original = mesh.enter_frame(frame);
+        let all = faces(&original);
+        let surface = Proximity::new(all.clone()).expect("triangles");
+        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        let set = &view_sets(&sphere)[0].1;
+        let worse = pushed(&mesh, 0.06, 11);
+        let mut distances = Vec::new();
+        for (weight, falling) in [(0.0, false), (1.0, false), (20.0, false), (20.0, true)] {
+            let mut live = LiveMesh::new(&worse, frame);
+            let pictures = Pictures::<LayerEngine>::new(&reference(&original, set), &live);
+            let bound = Deviation::new(&surface, &live, weight);
+            let total = deviation(&all, &worse.enter_frame(frame));
+            let mut judge = Judge {
+                original: &original,
+                faces: &all,
+                set,
+                weight,
+                falling,
+                total,
+                last: total,
+                sums: VecDeque::from([pictures.error().sum() as i64]),
+                for_the_surface: 0,
+            };
+            let options = Polish {
+                sweeps: 2,
+                flips_every: 1,
+                ..Polish::default()
+            };
+            let limits = Limits {
+                deviation: bound.as_ref(),
+                falling,
+                ..Limits::default()
+            };
+            let (pictures, _) = polish(
+                &mut live,
+                pictures,
+                options,
+                limits,
+                &mut |_, _| Ok(None),
+                &mut judge,
+                &Silent,
+            )
+            .expect("not interrupted");
+            let result = live.to_mesh().expect("valid").enter_frame(frame);
+            assert_eq!(
+                pictures.error().sum() as i64,
+                error(&original, &result, set)
+            );
+            for_the_surface += judge.for_the_surface;
+            distances.push(deviation(&all, &result));
+        }
+        assert!(
+            distances[1] < distances[0] && distances[2] < distances[0],
+            "{distances:?}"
+        );
+    }
+    assert!(for_the_surface > 20, "{for_the_surface}");
+}
+
+#[test]
+fn weights_that_are_no_weights_are_refused_by_name() {
+    let mesh = generate::icosphere(2);
+    for (name, weight) in [("swept-weight", f64::NAN), ("deviation-weight", -0.5)] {
+        let mut options = Options::image(Amount::Triangles(100));
+        let MethodOptions::Image(own) = &mut options.method else {
+            unreachable!("image-driven");
+        };
+        if name == "swept-weight" {
+            own.swept_weight = weight;
+        } else {
+            own.polish.deviation_weight = weight;
+        }
+        let refused = simplify(&mesh, &options, &Silent);
+        assert!(
+            matches!(&refused, Err(Error::Usage(what)) if what.contains(name)),
+            "{refused:?}"
+        );
+    }
+}

@@ -1,0 +1,14 @@
+//! The methods: what each promises of its results.
+
+mod billboards;
+mod deviation;
+mod fallback;
+mod fold_repair;
+pub(crate) mod image;
+mod interior_views;
+pub(crate) mod memoryless;
+pub(crate) mod polish;
+mod quadric;
+mod tolerance;
+mod view_bounded;
+mod visibility_guided;

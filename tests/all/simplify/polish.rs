@@ -1,0 +1,604 @@
+//! Polishing: what it promises about errors, topology, attributes, histories and threads.
+
+use glam::DVec3;
+use lodmark::{
+    Error, Progress, Silent,
+    collapse::{
+        Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star, flip,
+        unfolded,
+    },
+    mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
+    metric::closest_point,
+    num::math,
+    raster::{BucketEngine, LayerEngine, Unrender},
+    simplify::{
+        Amount, MethodOptions, Options, Outcome,
+        image::{
+            DrivingShading, ImageOptions, Limits, Pictures, Polish, PolishCounters, Preset, Start,
+            polish,
+        },
+        simplify,
+    },
+    view::{Interpolation, Sphere, ViewSet, ViewsName, frame_of},
+};
+use proptest::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::{
+    simplify::image::error, simplify::image::meshes, simplify::image::reference,
+    simplify::image::view_sets, support::meshes,
+};
+
+const THREE: Polish = Polish {
+    sweeps: 3,
+    flips_every: 1,
+    cameras_every: 0,
+    deviation_weight: 0.0,
+};
+
+/// Polishes a copy of `mesh` that was made worse, so that there is something to do.
+fn polished<E: Unrender>(
+    mesh: &Mesh,
+    worse: &Mesh,
+    set: &ViewSet,
+    options: Polish,
+    observer: &mut dyn Observer,
+) -> (LiveMesh, u64, Pictures<E>, PolishCounters) {
+    let frame = frame_of(mesh);
+    let mut live = LiveMesh::new(worse, frame);
+    let pictures = Pictures::<E>::new(&reference(&mesh.enter_frame(frame), set), &live);
+    let before = pictures.error().sum();
+    let (pictures, counters) = polish(
+        &mut live,
+        pictures,
+        options,
+        Limits::default(),
+        &mut |_, _| Ok(None),
+        observer,
+        &Silent,
+    )
+    .expect("not interrupted");
+    (live, before, pictures, counters)
+}
+
+/// The mesh with every vertex pushed aside by up to `amount`.
+pub(crate) fn pushed(mesh: &Mesh, amount: f64, seed: u64) -> Mesh {
+    let mut random = crate::support::Random(seed);
+    let mut parts = mesh.clone().into_parts();
+    for p in &mut parts.positions {
+        let mut axis = || (random.unit() - 0.5) * 2.0 * amount;
+        let to = *p + DVec3::new(axis(), axis(), axis());
+        *p = DVec3::from_array(to.to_array().map(|x| f64::from(x as f32)));
+    }
+    Mesh::new(parts).expect("valid")
+}
+
+/// Checks after every change that the error fell, by drawing everything.
+struct Falling<'a> {
+    original: &'a Mesh,
+    set: &'a ViewSet,
+    last: i64,
+    changes: usize,
+}
+
+impl Observer for Falling<'_> {
+    fn committed(&mut self, live: &LiveMesh, _: &Patch) {
+        let frame = live.frame();
+        let now = live.to_mesh().expect("valid").enter_frame(frame);
+        let error = error(self.original, &now, self.set);
+        assert!(error < self.last, "{error} after {}", self.last);
+        self.last = error;
+        self.changes += 1;
+    }
+}
+
+#[test]
+fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
+    let mut changes = 0;
+    for (name, mesh) in meshes() {
+        let frame = frame_of(&mesh);
+        let original = mesh.enter_frame(frame);
+        let worse = pushed(&mesh, 0.06, 7);
+        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        for (views, set) in view_sets(&sphere) {
+            let mut falling = Falling {
+                original: &original,
+                set: &set,
+                last: i64::MAX,
+                changes: 0,
+            };
+            let options = Polish { sweeps: 1, ..THREE };
+            let (_, before, pictures, counters) =
+                polished::<LayerEngine>(&mesh, &worse, &set, options, &mut falling);
+            assert!(pictures.error().sum() <= before, "{name}, {views}");
+            if falling.changes > 0 {
+                assert_eq!(
+                    pictures.error().sum() as i64,
+                    falling.last,
+                    "{name}, {views}"
+                );
+            }
+            assert_eq!(
+                falling.changes as u64,
+                counters.moves + counters.flips,
+                "{name}, {views}"
+            );
+            changes += falling.changes;
+        }
+    }
+    assert!(changes > 500, "{changes}");
+}
+
+#[test]
+fn both_engines_polish_alike() {
+    for (name, mesh) in meshes() {
+        let original = mesh.enter_frame(frame_of(&mesh));
+        let worse = pushed(&mesh, 0.05, 3);
+        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        for (views, set) in view_sets(&sphere).into_iter().take(3) {
+            let (a, _, _, layers) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
+            let (b, _, _, buckets) = polished::<BucketEngine>(&mesh, &worse, &set, THREE, &mut ());
+            assert_eq!(a.to_mesh(), b.to_mesh(), "{name}, {views}");
+            assert_eq!(layers, buckets, "{name}, {views}");
+        }
+    }
+}
+
+/// A run with everything: pre-simplification, collapses, moves, flips, turned cameras.
+fn options(triangles: u64, shading: DrivingShading) -> Options {
+    let mut options = Options::image(Amount::Triangles(triangles));
+    options.method = MethodOptions::Image(ImageOptions {
+        views: ViewsName::Spiral(5),
+        size: 32.into(),
+        samples: 1,
+        shading,
+        start: Start::Times(3.0),
+        polish: Polish {
+            sweeps: 4,
+            flips_every: 2,
+            cameras_every: 2,
+            deviation_weight: 0.2,
+        },
+        // Polishing is looked at, whatever becomes of its result.
+        fall_back: false,
+        ..Preset::Default.options()
+    });
+    options
+}
+
+fn run(mesh: &Mesh, triangles: u64, shading: DrivingShading) -> Outcome {
+    simplify(mesh, &options(triangles, shading), &Silent).expect("simplified")
+}
+
+fn shading(kind: usize) -> DrivingShading {
+    [
+        DrivingShading::Flat,
+        DrivingShading::Gouraud,
+        DrivingShading::Mixed,
+    ][kind % 3]
+}
+
+proptest! {
+    #![proptest_config(crate::support::cases(16))]
+
+    #[test]
+    fn a_replay_ends_with_the_polished_mesh_and_passes_by_the_collapsed_ones(
+        kind in 0_usize..8, seed: u64, triangles in 1_u64..60, levels in prop::collection::vec(1_usize..140, 1..6),
+    ) {
+        let mesh = meshes::any(kind, seed);
+        let outcome = run(&mesh, triangles, shading(seed as usize));
+        let last = outcome.mesh.triangles().len();
+        let bytes = outcome.history.to_bytes();
+        let history = History::from_bytes(&bytes, "run.lodh").expect("just written");
+        prop_assert_eq!(&history, &outcome.history);
+        let mut walk = Replay::new(&mesh, &history).expect("the same mesh");
+        for level in levels.into_iter().chain([last, 140, last]) {
+            walk.seek(level).expect("fits");
+            let mut fresh = Replay::new(&mesh, &history).expect("the same mesh");
+            fresh.seek(level).expect("fits");
+            prop_assert_eq!(walk.applied(), fresh.applied());
+            prop_assert_eq!(walk.live().to_mesh(), fresh.live().to_mesh());
+        }
+        prop_assert_eq!(walk.applied(), history.len());
+        if mesh.triangles().len() as u64 > triangles {
+            prop_assert_eq!(walk.live().to_mesh(), Ok(outcome.mesh));
+        } else {
+            prop_assert!(outcome.polish.is_none() && history.is_empty(), "a copy");
+        }
+        while walk.back() {}
+        prop_assert_eq!(walk.live().to_mesh(), LiveMesh::new(&mesh, history.header().frame).to_mesh());
+    }
+
+    #[test]
+    fn damaged_histories_of_polished_runs_are_refused_without_a_panic(
+        kind in 0_usize..8, at: prop::sample::Index, bit in 0_u8..8, cut: bool,
+    ) {
+        let mesh = meshes::any(kind, 5);
+        let history = run(&mesh, 30, DrivingShading::Flat).history;
+        let bytes = history.to_bytes();
+        // Somewhere in the records, which follow the options; the checksum is repaired.
+        let text = history.header().options.as_bytes();
+        let options = bytes.windows(text.len()).position(|w| w == text).expect("JSON") + text.len();
+        let at = options + at.index(bytes.len() - 32 - options);
+        let mut damaged = bytes[..bytes.len() - 32].to_vec();
+        if cut {
+            damaged.truncate(at);
+        } else {
+            damaged[at] ^= 1 << bit;
+        }
+        let sum = Sha256::digest(&damaged);
+        damaged.extend(sum);
+        match History::from_bytes(&damaged, "run.lodh") {
+            Err(e) => prop_assert!(matches!(e.exit_code(), 3 | 4), "{e}"),
+            Ok(history) => {
+                if let Ok(mut replay) = Replay::new(&mesh, &history)
+                    && let Err(e) = replay.seek(0)
+                {
+                    prop_assert_eq!(e.exit_code(), 3, "{}", e);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn polishing_changes_no_topology(kind in 0_usize..8, seed: u64) {
+        let mesh = canonical(&meshes::any(kind, seed)).mesh;
+        let original = mesh.enter_frame(frame_of(&mesh));
+        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        let set = view_sets(&sphere).swap_remove(seed as usize % 2).1;
+        let worse = pushed(&mesh, 0.1, seed);
+        let (live, ..) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
+        let now = live.to_mesh().expect("valid");
+        let (before, after) = (Edges::of(&worse), Edges::of(&now));
+        prop_assert_eq!(before.boundary_count(), after.boundary_count());
+        prop_assert_eq!(worse.triangles().len(), now.triangles().len());
+        prop_assert_eq!(faces_at_edges(&worse), faces_at_edges(&now));
+        for (old, new) in worse.materials().of_triangle.iter().zip(&now.materials().of_triangle) {
+            prop_assert_eq!(old, new);
+        }
+    }
+}
+
+/// How many edges have 1, 2, ... faces.
+fn faces_at_edges(mesh: &Mesh) -> Vec<usize> {
+    let mut sides: Vec<[u32; 2]> = mesh
+        .triangles()
+        .iter()
+        .flat_map(|t| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    sides.sort_unstable();
+    let mut counts = vec![0; 40];
+    for run in sides.chunk_by(|a, b| a == b) {
+        counts[run.len()] += 1;
+    }
+    counts
+}
+
+#[test]
+fn no_number_of_threads_changes_what_polishing_does() {
+    let mesh = canonical(&generate::icosphere(3)).mesh;
+    for kind in 0..3 {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("a pool");
+            let outcome = pool.install(|| run(&mesh, 150, shading(kind)));
+            assert!(outcome.polish.as_ref().is_some_and(|p| p.moves > 20));
+            (outcome.mesh, outcome.history.to_bytes(), outcome.polish)
+        };
+        let one = on(1);
+        for threads in [2, 3, 8] {
+            assert!(on(threads) == one, "{threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_locked_vertex_stays_where_it_is() {
+    let mesh = generate::icosphere(1);
+    let worse = pushed(&mesh, 0.1, 1);
+    let frame = frame_of(&mesh);
+    let original = mesh.enter_frame(frame);
+    let sphere = Sphere::of_mesh(&original).expect("triangles");
+    let (_, set) = view_sets(&sphere).swap_remove(0);
+    let mut live = LiveMesh::new(&worse, frame);
+    for v in (0..live.vertex_ids()).step_by(2) {
+        live.set_locked(v, true);
+    }
+    let before = live.positions().to_vec();
+    let pictures = Pictures::<LayerEngine>::new(&reference(&original, &set), &live);
+    let (_, counters) = polish(
+        &mut live,
+        pictures,
+        THREE,
+        Limits::default(),
+        &mut |_, _| Ok(None),
+        &mut (),
+        &Silent,
+    )
+    .expect("not interrupted");
+    assert!(counters.moves > 0);
+    for (v, (a, b)) in before.iter().zip(live.positions()).enumerate() {
+        assert!(v % 2 == 1 || a == b, "vertex {v}");
+    }
+}
+
+/// Stops after so many looks.
+struct Impatient(std::sync::atomic::AtomicU32);
+
+impl Progress for Impatient {
+    fn report(&self, phase: &str, done: u64, total: u64) {
+        assert!(total == 0 || done <= total, "{phase}: {done} of {total}");
+        if phase == "polish" {
+            self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+
+    fn interrupted(&self) -> bool {
+        self.0.load(std::sync::atomic::Ordering::Relaxed) > 3
+    }
+}
+
+#[test]
+fn polishing_can_be_interrupted() {
+    let mesh = canonical(&generate::icosphere(3)).mesh;
+    let stopped = simplify(
+        &mesh,
+        &options(150, DrivingShading::Flat),
+        &Impatient(0.into()),
+    );
+    assert!(matches!(stopped, Err(Error::Interrupted)));
+}
+
+#[test]
+fn under_an_error_limit_the_cameras_stay_and_the_limit_holds() {
+    let mesh = canonical(&generate::icosphere(3)).mesh;
+    let limited = Options {
+        error_rms: Some(6.0),
+        target: Amount::ErrorOnly,
+        ..options(1, DrivingShading::Flat)
+    };
+    let outcome = simplify(&mesh, &limited, &Silent).expect("simplified");
+    assert!(outcome.error_rms.is_some_and(|rms| rms <= 6.0));
+    assert_eq!(outcome.polish.expect("polished").cameras.len(), 1);
+}
+
+#[test]
+fn cameras_are_turned_as_often_as_asked_and_never_make_a_set_of_pictures_worse() {
+    let outcome = run(
+        &canonical(&generate::icosphere(3)).mesh,
+        150,
+        DrivingShading::Flat,
+    );
+    let counters = outcome.polish.expect("polished");
+    assert_eq!(counters.cameras.len(), 2, "4 sweeps, turned after 2");
+    for [before, after] in counters.cameras {
+        assert!(after <= before, "{before} to {after}");
+    }
+}
+
+/// A flat grid with texture coordinates that are an affine map of the plane, and one of normals per corner.
+fn textured_grid() -> Mesh {
+    let parts = generate::grid(4, 4, generate::Height::Polynomial).into_parts();
+    let positions: Vec<DVec3> = parts
+        .positions
+        .iter()
+        .map(|p| DVec3::new(p.x, p.y, 0.0))
+        .collect();
+    let values = positions.iter().flat_map(|&p| affine(p)).collect();
+    let attributes = Attributes::new(&[ChannelKind::TexCoord(0)], values, parts.triangles.clone());
+    Mesh::new(MeshParts {
+        positions,
+        triangles: parts.triangles,
+        attributes: attributes.expect("valid"),
+        ..MeshParts::default()
+    })
+    .expect("valid")
+}
+
+fn affine(p: DVec3) -> [f64; 2] {
+    [0.25 * p.x + 0.5 * p.y + 0.125, p.x - 0.75 * p.y]
+}
+
+#[test]
+fn a_texture_does_not_slide_with_the_vertices() {
+    let mesh = textured_grid();
+    let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let mut tested = 0;
+    for v in 0..live.vertex_ids() {
+        let mut star = Star::default();
+        star.gather(&live, v);
+        if star.neighbors.iter().any(|&(_, faces)| faces == 1) {
+            continue;
+        }
+        let step = 0.3 * star.mean_edge(&live);
+        let to = star.point + DVec3::new(0.6, -0.5, 0.0) * step;
+        let to = star
+            .admit(&live, to, Rules::default())
+            .expect("a small move");
+        let mut patch = Patch::default();
+        star.patch(&live, to, &mut patch);
+        live.apply(&patch, &mut Changes::default());
+        tested += 1;
+    }
+    assert!(tested >= 9, "{tested}");
+    let moved = live.to_mesh().expect("valid");
+    let channel = moved
+        .attributes()
+        .channel(ChannelKind::TexCoord(0))
+        .expect("kept");
+    for (corners, wedges) in moved.triangles().iter().zip(moved.attributes().corners()) {
+        for (&v, &w) in corners.iter().zip(wedges) {
+            let expected = affine(moved.positions()[v as usize]);
+            let found = moved.attributes().value(channel, w);
+            for (e, f) in expected.iter().zip(found) {
+                assert!(
+                    (e - f).abs() < 1e-6,
+                    "vertex {v}: {found:?}, not {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_vertex_on_a_seam_moves_along_the_normal_only() {
+    let live = |mesh: &Mesh| LiveMesh::new(mesh, frame_of(mesh));
+    let freedoms = |mesh: &Mesh| -> Vec<Freedom> {
+        let live = live(mesh);
+        let each = (0..live.vertex_ids()).map(|v| {
+            let mut star = Star::default();
+            star.gather(&live, v);
+            star.freedom
+        });
+        each.collect()
+    };
+    let count = |all: &[Freedom], f: Freedom| all.iter().filter(|&&x| x == f).count();
+    // A cube of 4 x 4 squares a side: 98 vertices, 9 inside every side.
+    let seams = freedoms(&meshes::cube(4, true, false));
+    assert_eq!(count(&seams, Freedom::Free), 54);
+    assert_eq!(count(&seams, Freedom::Normal), 44);
+    let plain = freedoms(&meshes::cube(4, false, false));
+    assert_eq!(count(&plain, Freedom::Free), 98);
+    // The common edge of three sheets has three vertices.
+    let (_, book) = meshes().swap_remove(3);
+    assert_eq!(count(&freedoms(&book), Freedom::Fixed), 3);
+}
+
+#[test]
+fn a_flip_crosses_no_seam_no_border_and_no_fold() {
+    let flips = |mesh: &Mesh| {
+        let live = LiveMesh::new(mesh, frame_of(mesh));
+        let mut outcomes = Vec::new();
+        for e in 0..live.edge_ids() {
+            let ends = live.edge(e).expect("in use");
+            outcomes.push((
+                ends,
+                flip(&live, ends, Rules::default(), &mut Patch::default()),
+            ));
+        }
+        outcomes
+    };
+    let inside = |(_, outcome): &&([u32; 2], Result<(), Refusal>)| outcome.is_ok();
+    // Two coplanar triangles, then the same with a material border, then a boundary.
+    let quad = |materials: Vec<u32>| {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let mut parts = MeshParts {
+            positions,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..MeshParts::default()
+        };
+        parts.materials.names = vec!["a".into(), "b".into()];
+        parts.materials.of_triangle = materials;
+        Mesh::new(parts).expect("valid")
+    };
+    let plain = flips(&quad(vec![0, 0]));
+    assert_eq!(
+        plain.iter().filter(inside).collect::<Vec<_>>(),
+        [&([0, 2], Ok(()))]
+    );
+    assert_eq!(flips(&quad(vec![0, 1])).iter().filter(inside).count(), 0);
+    // Every edge of a tetrahedron has its flip there already.
+    assert_eq!(
+        flips(&generate::tetrahedron())
+            .iter()
+            .filter(inside)
+            .count(),
+        0
+    );
+    // Normals that differ on both sides forbid every flip, equal ones do not.
+    let flat = flips(&meshes::textured_torus(8, 6, 1, true));
+    assert_eq!(flat.iter().filter(inside).count(), 0);
+    let smooth = flips(&meshes::textured_torus(8, 6, 1, false));
+    assert!(smooth.iter().filter(inside).count() > 20);
+}
+
+#[test]
+fn a_flip_and_its_flip_leave_the_surface_as_it_was() {
+    let mesh = meshes::torus(8, 6, 4);
+    let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let before = live.to_mesh().expect("valid");
+    let mut patch = Patch::default();
+    let edge = (0..live.edge_ids())
+        .filter_map(|e| live.edge(e))
+        .find(|&ends| flip(&live, ends, Rules::default(), &mut patch).is_ok())
+        .expect("some edge may be flipped");
+    assert_eq!(patch.flipped(), Some(edge));
+    live.apply(&patch, &mut Changes::default());
+    let middle = live.to_mesh().expect("valid");
+    assert_ne!(middle, before);
+    assert_eq!(live.find_edge(edge[0], edge[1]), None);
+    let back = patch.reversed();
+    assert!(unfolded(&live, &back, Rules::default()).is_ok());
+    live.apply(&back, &mut Changes::default());
+    assert_eq!(live.to_mesh().expect("valid"), before);
+    assert!(live.find_edge(edge[0], edge[1]).is_some());
+}
+
+#[test]
+fn half_of_mixed_views_are_flat() {
+    let mesh = generate::icosphere(1);
+    let frame = frame_of(&mesh);
+    let original = mesh.enter_frame(frame);
+    let of = |shading| {
+        let options = ImageOptions {
+            shading,
+            ..Preset::Default.options()
+        };
+        let set = options.views(&original, frame, 0).expect("views");
+        let gouraud = |v: &&lodmark::view::View| v.shading.interpolation == Interpolation::Gouraud;
+        [set.views.iter().filter(gouraud).count(), set.views.len()]
+    };
+    assert_eq!(of(DrivingShading::Flat), [0, 42]);
+    assert_eq!(of(DrivingShading::Gouraud), [42, 42]);
+    assert_eq!(of(DrivingShading::Mixed), [21, 42]);
+}
+
+/// Faces away from whose centroid the original looks the other way, as far as 1 % of its diagonal or its nearest point.
+fn turned_over(original: &Mesh, mesh: &Mesh) -> usize {
+    let faces = |mesh: &Mesh| -> Vec<[DVec3; 3]> {
+        let triangles = mesh.triangles().iter();
+        triangles
+            .map(|t| t.map(|v| mesh.positions()[v as usize]))
+            .collect()
+    };
+    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+    let (low, high) = original.bounds().expect("triangles");
+    let original = faces(original);
+    let is_turned = |&&face: &&[DVec3; 3]| {
+        let centroid = (face[0] + face[1] + face[2]) / 3.0;
+        let squared = |f: &[DVec3; 3]| closest_point(centroid, *f).1;
+        let nearest = original.iter().map(squared).fold(f64::INFINITY, f64::min);
+        let reach = (math::sqrt(nearest) * 1.000_001).max(0.01 * (high - low).length());
+        let near = original.iter().filter(|f| squared(f) <= reach * reach);
+        near.map(|f| normal(*f).dot(normal(face)))
+            .all(|dot| dot <= 0.0)
+    };
+    faces(mesh).iter().filter(is_turned).count()
+}
+
+#[test]
+fn polishing_turns_no_face_over_though_pictures_would_gain_by_it() {
+    let mut moved = 0;
+    for name in ["terrain", "tori", "shells"] {
+        let mesh = canonical(&generate::by_name(name).expect("a name of the list")).mesh;
+        for triangles in [60, 150] {
+            let mut options = options(triangles, DrivingShading::Gouraud);
+            let polished = simplify(&mesh, &options, &Silent).expect("simplified");
+            let MethodOptions::Image(own) = &mut options.method else {
+                unreachable!("image-driven");
+            };
+            own.polish.sweeps = 0;
+            let plain = simplify(&mesh, &options, &Silent).expect("simplified");
+            let [before, after] = [plain, polished.clone()].map(|o| turned_over(&mesh, &o.mesh));
+            assert!(
+                after <= before,
+                "{name} to {triangles}: {before}, then {after}"
+            );
+            moved += polished.polish.expect("polished").moves;
+        }
+    }
+    assert!(moved > 500, "{moved}");
+}

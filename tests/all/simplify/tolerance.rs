@@ -1,0 +1,381 @@
+//! The method `tolerance`: no run breaks its bound, whatever the mesh; histories, stops and errors.
+//!
+//! Distances are sampled by brute force with the code of `envelope`, which shares none with the certificate.
+//!
+//! `LODMARK_BOUND_CASES` sets the number of cases of each property, and `LODMARK_SEED` what they are drawn from.
+
+use glam::DVec3;
+use lodmark::{
+    Progress, Silent,
+    bound::tolerance::Source,
+    collapse::{Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Ring, Rules, Site},
+    mesh::{Mesh, canonical, content_sha256, generate},
+    num::{Frame, Precision},
+    simplify::{
+        Amount, Options, Outcome, Stop, simplify,
+        tolerance::{Distance, ToleranceMethod, ToleranceOptions},
+    },
+};
+use proptest::prelude::*;
+
+use crate::{bound::envelope::distance, bound::envelope::lattice, support::meshes};
+
+fn within(mesh: &Mesh, own: ToleranceOptions) -> Outcome {
+    let options = Options::tolerance(own, Amount::ErrorOnly);
+    simplify(mesh, &options, &Silent).expect("valid")
+}
+
+fn share(error: f64) -> ToleranceOptions {
+    ToleranceOptions::new(Distance::OfDiagonal(error))
+}
+
+fn corners(mesh: &Mesh) -> Vec<[DVec3; 3]> {
+    (0..mesh.triangles().len())
+        .map(|t| mesh.corners(t))
+        .collect()
+}
+
+fn diagonal(mesh: &Mesh) -> f64 {
+    let points = || corners(mesh).into_iter().flatten();
+    let low = points().reduce(DVec3::min).expect("not empty");
+    let high = points().reduce(DVec3::max).expect("not empty");
+    (high - low).length()
+}
+
+/// The largest sampled distance from the points of a surface to another one.
+fn farthest(from: &Mesh, to: &Mesh, steps: u32) -> f64 {
+    let all = corners(to);
+    let mut most: f64 = 0.0;
+    for triangle in corners(from) {
+        for p in lattice(triangle, steps) {
+            let distances = all.iter().map(|&t| distance(p, t));
+            most = most.max(distances.fold(f64::INFINITY, f64::min));
+        }
+    }
+    most
+}
+
+proptest! {
+    #![proptest_config(crate::support::bounded(64))]
+
+    #[test]
+    fn no_point_of_either_surface_is_farther_than_the_bound(
+        kind in 0_usize..8, seed: u64, exponent in 1.0_f64..9.0, variant in 0_usize..5,
+    ) {
+        let mesh = canonical(&meshes::any(kind, seed)).mesh;
+        let error = 0.5 * libm::exp(-exponent * 0.7);
+        let mut own = share(error);
+        match variant {
+            0 => own.one_sided = true,
+            1 => own.volume = Some(Source::Edges),
+            2 => own.volume = Some(Source::Vertices),
+            3 => own.growing = true,
+            _ => {}
+        }
+        let outcome = within(&mesh, own);
+        let bound = error * diagonal(&mesh) * (1.0 + 1e-12);
+        let guarantee = outcome.guarantee.expect("a bound");
+        prop_assert!((guarantee.distance - bound).abs() <= 1e-9 * bound);
+        let there = farthest(&outcome.mesh, &mesh, 6);
+        prop_assert!(there <= bound, "{there} > {bound}");
+        if !own.one_sided {
+            let back = farthest(&mesh, &outcome.mesh, 6);
+            prop_assert!(back <= bound, "{back} > {bound}");
+        }
+    }
+
+    /// Whatever was proposed before: the last word is about the mesh as it is now.
+    #[test]
+    fn no_collapse_is_confirmed_that_leaves_a_part_of_the_original_alone(
+        kind in prop::sample::select(vec![0_usize, 1, 3]), seed: u64, share in 0.01_f64..0.15,
+    ) {
+        let mesh = canonical(&meshes::any(kind, seed)).mesh;
+        let mut live = LiveMesh::new(&mesh, Frame::default());
+        let mut method = ToleranceMethod::new(&live, self::share(share)).expect("a bound");
+        let bound = share * diagonal(&mesh);
+        let original = corners(&mesh);
+        let mut random = crate::support::Random(seed);
+        let (mut ring, mut patch, mut changes) = (Ring::default(), Patch::default(), Changes::default());
+        for _ in 0..15 {
+            let edge = random.below(live.edge_ids() as usize) as u32;
+            if live.edge(edge).is_none() || !ring.gather(&live, edge) {
+                continue;
+            }
+            let Ok(site) = Site::new(&live, &ring, Rules::default()) else { continue };
+            let [u, w] = ring.points;
+            let mut noise = || (random.unit() - 0.5) * bound;
+            let place = u.lerp(w, 0.5 + noise() / bound) + DVec3::new(noise(), noise(), noise());
+            let Ok(position) = site.admit(site.fixed().unwrap_or(place)) else { continue };
+            site.patch(position, &mut patch);
+            let all = 0..live.triangle_ids();
+            let stays = all.filter(|t| patch.removed.iter().all(|f| f.id != *t));
+            let mut after: Vec<[DVec3; 3]> = stays.filter_map(|t| live.points(t)).collect();
+            after.extend(patch.added.iter().map(|f| patch.after(&live, f)));
+            let mut most = 0.0_f64;
+            for &triangle in &original {
+                for p in lattice(triangle, 4) {
+                    most = most.max(after.iter().map(|&t| distance(p, t)).fold(f64::INFINITY, f64::min));
+                }
+            }
+            let proposal = Proposal { position, image: 0, geometric: 0.0 };
+            let confirmed = method.confirm(&live, &patch, &proposal);
+            prop_assert!(!confirmed || most <= bound, "{most} of {bound}");
+            if confirmed {
+                live.apply(&patch, &mut changes);
+                method.committed(&live, &patch);
+            }
+        }
+    }
+
+    #[test]
+    fn a_replay_of_a_bounded_run_ends_where_the_run_did(kind in 0_usize..8, seed: u64) {
+        let mesh = canonical(&meshes::any(kind, seed)).mesh;
+        let mut own = share(0.05);
+        own.growing = seed % 2 == 0;
+        let outcome = within(&mesh, own);
+        let bytes = outcome.history.to_bytes();
+        let history = History::from_bytes(&bytes, "run.lmh").expect("just written");
+        let mut walk = Replay::new(&mesh, &history).expect("the same mesh");
+        walk.seek(1).expect("fits");
+        prop_assert_eq!(walk.live().to_mesh(), Ok(outcome.mesh.clone()));
+        // A run that stops at more triangles is a start of the longer one.
+        let triangles = (mesh.triangles().len() + outcome.mesh.triangles().len()) / 2;
+        let options = Options::tolerance(own, Amount::Triangles(triangles.max(1) as u64));
+        let shorter = simplify(&mesh, &options, &Silent).expect("valid");
+        walk.seek(triangles.max(1)).expect("fits");
+        prop_assert_eq!(walk.live().to_mesh(), Ok(shorter.mesh));
+    }
+}
+
+#[test]
+fn no_number_of_threads_changes_a_bounded_result() {
+    let mesh = canonical(&meshes::torus(40, 30, 3)).mesh;
+    for own in [
+        share(0.02),
+        ToleranceOptions {
+            volume: Some(Source::Edges),
+            ..share(0.03)
+        },
+    ] {
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let outcome = pool.expect("threads").install(|| within(&mesh, own));
+            (content_sha256(&outcome.mesh), outcome.phases)
+        };
+        let one = run(1);
+        assert!([2, 3, 8].into_iter().all(|threads| run(threads) == one));
+    }
+}
+
+/// A flat square of `n * n` squares in steps that floats hold exactly.
+fn plate(n: usize) -> Mesh {
+    let at = |x: usize, y: usize| (y * (n + 1) + x) as u32;
+    let positions = (0..(n + 1) * (n + 1))
+        .map(|i| DVec3::new((i % (n + 1)) as f64, (i / (n + 1)) as f64, 0.0) / n as f64)
+        .collect();
+    let mut triangles = Vec::new();
+    for y in 0..n {
+        for x in 0..n {
+            triangles.push([at(x, y), at(x + 1, y), at(x + 1, y + 1)]);
+            triangles.push([at(x, y), at(x + 1, y + 1), at(x, y + 1)]);
+        }
+    }
+    canonical(&Mesh::from_triangles(positions, triangles).expect("valid")).mesh
+}
+
+#[test]
+fn an_open_plate_becomes_two_triangles_and_keeps_its_outline() {
+    let mesh = plate(8);
+    let outcome = within(&mesh, share(1e-6));
+    assert_eq!(outcome.mesh.triangles().len(), 2);
+    assert!(farthest(&mesh, &outcome.mesh, 8) <= 2e-3);
+}
+
+#[test]
+fn a_larger_bound_leaves_fewer_triangles_and_a_huge_one_only_what_topology_needs() {
+    let mesh = canonical(&generate::icosphere(3)).mesh;
+    let count = |error| within(&mesh, share(error)).mesh.triangles().len();
+    let counts = [1e-4, 0.005, 0.05, 10.0, 1e300].map(count);
+    assert!(counts.is_sorted_by(|a, b| a >= b), "{counts:?}");
+    assert!(counts[0] > 1000 && counts[1] < 400, "{counts:?}");
+    assert_eq!(counts[3..], [4, 4]);
+}
+
+#[test]
+fn a_bound_that_is_none_is_refused_with_what_to_try() {
+    let mesh = generate::icosphere(1);
+    for wrong in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-16] {
+        for error in [Distance::OfDiagonal(wrong), Distance::Length(wrong)] {
+            let options = Options::tolerance(ToleranceOptions::new(error), Amount::ErrorOnly);
+            let refused = simplify(&mesh, &options, &Silent).expect_err("no distance");
+            assert_eq!(refused.exit_code(), 2, "{refused}");
+            assert!(refused.to_string().contains("expected"), "{refused}");
+        }
+    }
+    let options = Options::tolerance(share(0.1), Amount::Triangles(0));
+    assert_eq!(
+        simplify(&mesh, &options, &Silent)
+            .expect_err("none")
+            .exit_code(),
+        2
+    );
+}
+
+#[test]
+fn a_length_is_the_fraction_times_the_diagonal() {
+    let mesh = canonical(&meshes::torus(12, 9, 4)).mesh;
+    let by_share = within(&mesh, share(0.02));
+    let length = Distance::Length(0.02 * diagonal(&mesh));
+    let by_length = within(&mesh, ToleranceOptions::new(length));
+    assert_eq!(by_share.mesh, by_length.mesh);
+    let g = by_length.guarantee.expect("a bound");
+    assert!((g.of_diagonal.expect("a size") - 0.02).abs() < 1e-12 && g.two_sided);
+}
+
+#[test]
+fn a_number_of_triangles_stops_before_the_bound_does() {
+    let mesh = canonical(&meshes::torus(20, 15, 4)).mesh;
+    let options = Options::tolerance(share(0.2), Amount::Triangles(300));
+    let outcome = simplify(&mesh, &options, &Silent).expect("valid");
+    assert_eq!(
+        (outcome.mesh.triangles().len(), outcome.stop),
+        (300, Stop::TargetReached)
+    );
+    let strict = Options::tolerance(share(1e-4), Amount::Triangles(300));
+    let outcome = simplify(&mesh, &strict, &Silent).expect("valid");
+    let Stop::NoLegalCollapse { refusals } = outcome.stop else {
+        panic!("300 triangles within a hundredth of a percent");
+    };
+    let names: Vec<_> = refusals.iter().map(|(r, _)| r.name()).collect();
+    assert!(
+        names.contains(&"strays") || names.contains(&"uncovers"),
+        "{names:?}"
+    );
+    let copy = Options::tolerance(share(0.2), Amount::Triangles(9999));
+    assert_eq!(
+        simplify(&mesh, &copy, &Silent).expect("valid").stop,
+        Stop::TargetAboveInput
+    );
+}
+
+#[test]
+fn one_side_lets_a_spike_go_and_both_sides_keep_it() {
+    // A plate with a thin spike in the middle: the plate alone is near to the whole, but not the other way round.
+    let mut parts = plate(8).into_parts();
+    let middle = parts
+        .positions
+        .iter_mut()
+        .find(|p| (p.x - 0.5).abs() + (p.y - 0.5).abs() < 1e-12);
+    middle.expect("a vertex").z = 0.5;
+    let mesh = canonical(&Mesh::new(parts).expect("valid")).mesh;
+    let one = within(
+        &mesh,
+        ToleranceOptions {
+            one_sided: true,
+            ..share(0.1)
+        },
+    );
+    let both = within(&mesh, share(0.1));
+    let top = |m: &Mesh| m.positions().iter().map(|p| p.z).fold(0.0, f64::max);
+    assert!(top(&both.mesh) > 0.3, "{}", top(&both.mesh));
+    assert!(farthest(&mesh, &both.mesh, 8) <= 0.1 * diagonal(&mesh));
+    assert!(one.mesh.triangles().len() <= both.mesh.triangles().len());
+}
+
+#[test]
+fn needles_folds_and_sheets_that_meet_are_kept_within_the_bound() {
+    let needle = DVec3::new(0.5, 1e-9, 0.0);
+    let mut folded = plate(4).into_parts();
+    // The right half lies on the left one.
+    for p in &mut folded.positions {
+        if p.x > 0.5 {
+            p.x = 1.0 - p.x;
+            p.z = 1e-3;
+        }
+    }
+    let meshes = [
+        // Two needles between usual triangles.
+        Mesh::from_triangles(
+            vec![DVec3::ZERO, DVec3::X, DVec3::Y, -DVec3::Y, needle],
+            vec![[0, 4, 2], [4, 1, 2], [0, 1, 4], [0, 3, 1]],
+        ),
+        Mesh::new(folded),
+        // Three sheets at one edge.
+        Mesh::from_triangles(
+            vec![
+                DVec3::ZERO,
+                DVec3::X,
+                DVec3::Y,
+                DVec3::Z,
+                -DVec3::Y,
+                DVec3::X * 0.5,
+            ],
+            vec![
+                [0, 5, 2],
+                [5, 1, 2],
+                [0, 5, 3],
+                [5, 1, 3],
+                [0, 5, 4],
+                [5, 1, 4],
+            ],
+        ),
+    ];
+    for mesh in meshes {
+        let mesh = canonical(&mesh.expect("valid")).mesh;
+        for own in [
+            share(0.02),
+            ToleranceOptions {
+                volume: Some(Source::Edges),
+                growing: true,
+                ..share(0.02)
+            },
+        ] {
+            let outcome = within(&mesh, own);
+            let bound = 0.02 * diagonal(&mesh);
+            assert!(farthest(&outcome.mesh, &mesh, 10) <= bound);
+            assert!(farthest(&mesh, &outcome.mesh, 10) <= bound);
+        }
+    }
+}
+
+#[test]
+fn a_mesh_far_from_the_origin_or_of_another_size_is_bounded_as_well() {
+    let torus = meshes::torus(14, 9, 4);
+    for (size, shift) in [(1e-25, 0.0), (1e20, 0.0), (1.0, 3e5)] {
+        let mut parts = torus.clone().into_parts();
+        parts.precision = Precision::F64;
+        for p in &mut parts.positions {
+            *p = *p * size + DVec3::splat(shift);
+        }
+        let mesh = canonical(&Mesh::new(parts).expect("valid")).mesh;
+        let outcome = within(&mesh, share(0.03));
+        let bound = 0.03 * diagonal(&mesh);
+        assert!(outcome.mesh.triangles().len() < mesh.triangles().len());
+        assert!(
+            farthest(&outcome.mesh, &mesh, 5) <= bound,
+            "size {size}, shift {shift}"
+        );
+        assert!(
+            farthest(&mesh, &outcome.mesh, 5) <= bound,
+            "size {size}, shift {shift}"
+        );
+    }
+}
+
+/// Asks to stop when collapses have begun.
+struct Impatient;
+
+impl Progress for Impatient {
+    fn report(&self, _: &str, _: u64, _: u64) {}
+
+    fn interrupted(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_bounded_run_can_be_interrupted() {
+    let options = Options::tolerance(share(0.01), Amount::ErrorOnly);
+    let stopped = simplify(&meshes::torus(20, 15, 1), &options, &Impatient);
+    assert_eq!(stopped.expect_err("interrupted").exit_code(), 130);
+}

@@ -1,0 +1,409 @@
+//! Visibility-guided simplification: the vectors, the quadric method, hidden parts, replay.
+
+use glam::DVec3;
+use lodmark::{
+    Error, Silent,
+    collapse::{Engine, LiveMesh, Method, Ring, Rules, Schedule, Site, Target},
+    mesh::{Mesh, canonical, generate},
+    simplify::{
+        Amount, MethodOptions, Options, Replay,
+        quadric::{QuadricMethod, QuadricOptions, Weighting},
+        simplify, simplify_guided,
+        visibility::{VisibilityMethod, VisibilityOptions},
+    },
+    view::frame_of,
+    visibility::{self, measure},
+};
+use proptest::prelude::*;
+
+use crate::{
+    simplify::memoryless::interior, simplify::memoryless::ring, support::Random, support::expect,
+    support::folder, support::meshes, support::put,
+};
+
+fn live(mesh: &Mesh) -> LiveMesh {
+    LiveMesh::new(mesh, frame_of(mesh))
+}
+
+/// Random visibilities, a third of them 0.
+fn scattered(count: usize, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    (0..count)
+        .map(|_| (random.unit() * 1.5 - 0.5).max(0.0))
+        .collect()
+}
+
+fn engine(
+    mesh: &Mesh,
+    options: &VisibilityOptions,
+    visibility: &[f64],
+) -> Engine<VisibilityMethod> {
+    let live = live(mesh);
+    let method = VisibilityMethod::new(&live, options, visibility).expect("as many, in range");
+    Engine::new(live, method, Rules::default(), Schedule::Semi)
+}
+
+fn reduced<M: Method>(mut engine: Engine<M>, triangles: usize) -> Mesh {
+    let target = Target { triangles };
+    engine.run(target, &mut (), &Silent).expect("runs");
+    engine.live().to_mesh().expect("valid")
+}
+
+fn plain(mesh: &Mesh) -> Engine<QuadricMethod> {
+    let live = live(mesh);
+    let method = QuadricMethod::new(&live, &QuadricOptions::default());
+    Engine::new(live, method, Rules::default(), Schedule::Semi)
+}
+
+#[test]
+fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
+    // visibility_guided.quadric: a quarter is seen of the faces at w.
+    let live = interior(false);
+    let visibility: Vec<f64> = (0..live.triangle_ids())
+        .map(|t| match live.triangle(t) {
+            Some(corners) if corners.contains(&1) => 0.25,
+            _ => 1.0,
+        })
+        .collect();
+    let options = VisibilityOptions {
+        quadric: QuadricOptions {
+            weighting: Weighting::Unit,
+            // The ring's outer edges are boundaries of the test's mesh, not of the vector's.
+            boundary_weight: 0.0,
+            uncertainty: None,
+        },
+        tie_weight: 0.0,
+        ..VisibilityOptions::default()
+    };
+    let (e_q, e_v) = (0.054_011_934_252_198_86, 0.009_573_026_642_192_707);
+    for (tie_weight, cost) in [(0.0, e_v), (1e-6, e_v + 1e-6 * e_q), (1.0, e_v + e_q)] {
+        let options = VisibilityOptions {
+            tie_weight,
+            ..options.clone()
+        };
+        let method = VisibilityMethod::new(&live, &options, &visibility).expect("ten of them");
+        let ring: Ring = ring(&live, 0, 1);
+        let site = Site::new(&live, &ring, Rules::default()).expect("legal");
+        let proposal = method.propose(&site, &mut ()).expect("legal");
+        let v = [
+            -0.026_137_273_713_825_21,
+            0.013_314_889_780_954_322,
+            0.251_220_690_836_399_3,
+        ];
+        for (found, expected) in proposal.position.position().to_array().into_iter().zip(v) {
+            assert!((found - expected).abs() < 1e-11, "{found}, not {expected}");
+        }
+        assert!(
+            (proposal.geometric - cost).abs() < 1e-12,
+            "{} instead of {cost}",
+            proposal.geometric
+        );
+        assert_eq!(proposal.image, 0);
+    }
+}
+
+#[test]
+fn visibilities_that_fit_no_triangle_or_no_share_are_refused() {
+    let live = live(&meshes::grid(3, 1));
+    for wrong in [vec![1.0; 17], vec![1.0; 19], vec![]] {
+        let error = VisibilityMethod::new(&live, &VisibilityOptions::default(), &wrong);
+        let text = error.expect_err("18 triangles").to_string();
+        assert!(text.contains("for 18 triangles"), "{text}");
+    }
+    for wrong in [-0.1, 1.5, f64::NAN, f64::INFINITY] {
+        let mut visibility = vec![0.5; 18];
+        visibility[7] = wrong;
+        let error = VisibilityMethod::new(&live, &VisibilityOptions::default(), &visibility);
+        let text = error.expect_err("out of range").to_string();
+        assert!(
+            text.contains("triangle 7") && text.contains("0 to 1"),
+            "{text}"
+        );
+    }
+}
+
+/// Mean squared distance of the vertices with `|p| > 0.75` from the unit sphere, and the triangles out there.
+fn outside(mesh: &Mesh) -> (f64, usize) {
+    let far = |t: &usize| mesh.corners(*t).iter().all(|p| p.length() > 0.75);
+    let triangles: Vec<usize> = (0..mesh.triangles().len()).filter(far).collect();
+    let deviation = |t: &usize| {
+        let [a, b, c] = mesh.corners(*t);
+        let d = 1.0 - ((a + b + c) / 3.0).length();
+        d * d
+    };
+    let sum: f64 = triangles.iter().map(deviation).sum();
+    (sum / triangles.len() as f64, triangles.len())
+}
+
+#[test]
+fn what_nobody_sees_goes_first_and_the_rest_keeps_its_shape() {
+    let mesh = canonical(&generate::shells(2, 2)).mesh;
+    let visibility: Vec<f64> = (0..mesh.triangles().len())
+        .map(|t| f64::from(u8::from(mesh.corners(t)[0].length() > 0.75)))
+        .collect();
+    let target = 330;
+    let guided = reduced(
+        engine(&mesh, &VisibilityOptions::default(), &visibility),
+        target,
+    );
+    let plain = reduced(plain(&mesh), target);
+    let ((guided_error, guided_count), (plain_error, plain_count)) =
+        (outside(&guided), outside(&plain));
+    assert_eq!(
+        guided_count, 320,
+        "the outer sphere has not lost a triangle"
+    );
+    assert!(plain_count < 300, "{plain_count}");
+    assert!(
+        guided_error < 0.7 * plain_error,
+        "{guided_error} {plain_error}"
+    );
+}
+
+/// Down to so many triangles, by six cameras.
+fn options(triangles: u64) -> Options {
+    let mut options = Options::visibility(Amount::Triangles(triangles));
+    options.method = MethodOptions::Visibility(VisibilityOptions {
+        measure: visibility::Options {
+            octahedron: 0,
+            size: 48,
+            ..visibility::Options::default()
+        },
+        ..VisibilityOptions::default()
+    });
+    options
+}
+
+#[test]
+fn options_out_of_range_are_refused_by_name() {
+    let mesh = generate::icosphere(1);
+    for (wrong, said) in [
+        (
+            VisibilityOptions {
+                tie_weight: -1.0,
+                ..VisibilityOptions::default()
+            },
+            "tie-weight",
+        ),
+        (
+            VisibilityOptions {
+                tie_weight: f64::NAN,
+                ..VisibilityOptions::default()
+            },
+            "tie-weight",
+        ),
+        (
+            VisibilityOptions {
+                measure: visibility::Options {
+                    octahedron: 9,
+                    ..visibility::Options::default()
+                },
+                ..VisibilityOptions::default()
+            },
+            "octahedron",
+        ),
+        (
+            VisibilityOptions {
+                quadric: QuadricOptions {
+                    boundary_weight: -1.0,
+                    ..QuadricOptions::default()
+                },
+                ..VisibilityOptions::default()
+            },
+            "boundary-weight",
+        ),
+    ] {
+        let options = Options {
+            method: MethodOptions::Visibility(wrong),
+            ..options(9)
+        };
+        let error = simplify(&mesh, &options, &Silent).expect_err("out of range");
+        assert!(matches!(error, Error::Usage(_)), "{error}");
+        assert!(error.to_string().contains(said), "{error}");
+    }
+}
+
+#[test]
+fn a_visibility_measured_before_guides_as_one_measured_now() {
+    let mesh = canonical(&generate::shells(2, 1)).mesh;
+    let options = options(60);
+    let MethodOptions::Visibility(own) = &options.method else {
+        panic!("{options:?}");
+    };
+    let direct = simplify(&mesh, &options, &Silent).expect("runs");
+    let before = measure(&mesh, &own.measure, &Silent).expect("measures");
+    // Whatever the options say: what was measured is what counts and what is recorded.
+    let asked = Options::visibility(Amount::Triangles(60));
+    let guided = simplify_guided(&mesh, &asked, &before, &Silent).expect("runs");
+    assert_eq!(guided.mesh, direct.mesh);
+    assert_eq!(guided.options, direct.options);
+    assert_eq!(guided.history, direct.history);
+    assert_eq!(guided.v_mesh, Some(before.mesh()));
+    let text = serde_json::to_string(&guided.options).expect("JSON");
+    assert_eq!(
+        serde_json::from_str::<Options>(&text).expect("read back"),
+        options
+    );
+    let other = simplify_guided(
+        &mesh,
+        &Options::quadric(Amount::Triangles(60)),
+        &before,
+        &Silent,
+    );
+    assert!(matches!(other, Err(Error::Usage(_))));
+    let mesh = generate::icosphere(1);
+    let other = simplify_guided(&mesh, &asked, &before, &Silent);
+    assert!(matches!(other, Err(Error::Usage(_))));
+}
+
+#[test]
+fn every_level_of_a_guided_run_is_the_direct_run_to_it() {
+    // What is repaired after the last collapse belongs to the level where the run ended.
+    let options = |triangles| Options {
+        unfold: false,
+        ..options(triangles)
+    };
+    for kind in [0, 1, 3, 4] {
+        let mesh = meshes::any(kind, 7);
+        let outcome = simplify(&mesh, &options(4), &Silent).expect("runs");
+        let mut replay = Replay::new(&mesh, &outcome.history).expect("the same mesh");
+        for share in [0.3, 0.8, 0.5] {
+            let triangles = (mesh.triangles().len() as f64 * share) as u64;
+            replay.seek(triangles as usize).expect("fits");
+            let direct = simplify(&mesh, &options(triangles), &Silent).expect("runs");
+            assert_eq!(replay.live().to_mesh(), Ok(direct.mesh), "{kind} {share}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(crate::support::cases(16))]
+
+    #[test]
+    fn where_all_is_seen_alike_it_is_the_quadric_method(kind in 0_usize..8, seed: u64, share in 0.2..0.9) {
+        // With a power of two, and no second term, not a bit of the order changes.
+        let mesh = meshes::any(kind, seed);
+        let target = (mesh.triangles().len() as f64 * share) as usize;
+        let expected = reduced(plain(&mesh), target);
+        for v in [1.0, 0.5] {
+            let options = VisibilityOptions { tie_weight: 0.0, ..VisibilityOptions::default() };
+            let visibility = vec![v; mesh.triangles().len()];
+            prop_assert_eq!(&reduced(engine(&mesh, &options, &visibility), target), &expected);
+        }
+        // Where nothing is seen the second term alone decides.
+        let options = VisibilityOptions { tie_weight: 0.25, ..VisibilityOptions::default() };
+        let visibility = vec![0.0; mesh.triangles().len()];
+        prop_assert_eq!(&reduced(engine(&mesh, &options, &visibility), target), &expected);
+    }
+
+    #[test]
+    fn both_quadrics_are_sums_over_all_that_a_vertex_swallowed(kind in 0_usize..8, seed: u64) {
+        // The quadrics of all vertices together never change, and neither do those of the vertices that are left.
+        let mesh = meshes::any(kind, seed);
+        let visibility = scattered(mesh.triangles().len(), seed ^ 1);
+        let mut engine = engine(&mesh, &VisibilityOptions::default(), &visibility);
+        let probe = DVec3::new(0.3, -0.2, 0.1);
+        let total = |engine: &Engine<VisibilityMethod>| {
+            let (live, method) = (engine.live(), engine.method());
+            let alive = (0..live.vertex_ids()).filter(|&v| live.edges_at(v).next().is_some());
+            alive.fold([0.0; 2], |[q, v], vertex| [
+                q + method.placing().quadric(vertex).error(probe),
+                v + method.ordering().quadric(vertex).error(probe),
+            ])
+        };
+        let before = total(&engine);
+        for share in [0.8, 0.5] {
+            let triangles = (mesh.triangles().len() as f64 * share) as usize;
+            engine.run(Target { triangles }, &mut (), &Silent).expect("runs");
+            // A vertex that lost its last face took its quadric along; only closed surfaces keep all.
+            if matches!(kind, 1 | 4 | 5 | 6) {
+                for (before, after) in before.into_iter().zip(total(&engine)) {
+                    prop_assert!((before - after).abs() <= 1e-9 * before, "{before} {after}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_no_bit(kind in 0_usize..8, seed: u64, share in 0.1..0.9) {
+        let mesh = meshes::any(kind, seed);
+        let visibility = scattered(mesh.triangles().len(), seed ^ 2);
+        let triangles = (mesh.triangles().len() as f64 * share) as usize;
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads").install(|| {
+                reduced(engine(&mesh, &VisibilityOptions::default(), &visibility), triangles)
+            })
+        };
+        let one = run(1);
+        for threads in [2, 3, 8] {
+            prop_assert_eq!(&run(threads), &one);
+        }
+    }
+}
+
+#[test]
+fn the_command_takes_the_visibility_from_a_file_and_refuses_that_of_another_mesh() {
+    let dir = folder();
+    put(&dir, "in.ply", &generate::shells(2, 2));
+    put(&dir, "other.ply", &generate::shells(2, 1));
+    let measure = ["--cameras", "18", "--size", "64", "--partial", "counts.bin"];
+    expect(&dir, 0, &[&["visibility", "in.ply"][..], &measure].concat());
+    let simplify = |input: &str, more: &[&str], exit: i32| {
+        let words = [
+            &[
+                "simplify",
+                input,
+                "out.ply",
+                "-t",
+                "330",
+                "--method",
+                "visibility",
+            ][..],
+            &["--json", "report.json", "--history", "history.bin"],
+            more,
+        ];
+        expect(&dir, exit, &words.concat())
+    };
+    let files = || {
+        ["out.ply", "report.json", "history.bin"]
+            .map(|name| std::fs::read(dir.path().join(name)).expect("written"))
+    };
+    simplify("in.ply", &["--visibility", "counts.bin"], 0);
+    let from_file = files();
+    simplify("in.ply", &["--cameras", "18", "--visibility-size", "64"], 0);
+    assert_eq!(
+        files(),
+        from_file,
+        "measured before or now, not a byte differs"
+    );
+    let report: serde_json::Value = serde_json::from_slice(&from_file[1]).expect("JSON");
+    assert_eq!(report["options"]["method"]["measure"]["octahedron"], 1);
+    assert!(
+        report["v_mesh"]
+            .as_f64()
+            .is_some_and(|v| v > 0.5 && v < 0.95)
+    );
+    let said = simplify("other.ply", &["--visibility", "counts.bin"], 3);
+    assert!(
+        said.contains("counts.bin") && said.contains("another mesh"),
+        "{said}"
+    );
+    std::fs::write(dir.path().join("counts.bin"), b"LODMVISI").expect("writes");
+    let said = simplify("in.ply", &["--visibility", "counts.bin"], 3);
+    assert!(said.contains("counts.bin"), "{said}");
+    let both = ["--visibility", "counts.bin", "--cameras", "6"];
+    simplify("in.ply", &both, 2);
+    let words = [
+        "simplify",
+        "in.ply",
+        "out.ply",
+        "-t",
+        "9",
+        "--method",
+        "quadric",
+        "--cameras",
+        "6",
+    ];
+    assert!(expect(&dir, 2, &words).contains("--cameras"));
+}

@@ -1,0 +1,62 @@
+//! Running the command as a user does.
+
+use std::{
+    path::PathBuf,
+    process::{Command, Output},
+};
+
+use lodmark::{io, mesh::Mesh};
+use tempfile::TempDir;
+
+/// A folder below `target` that goes away.
+pub(crate) fn folder() -> TempDir {
+    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
+}
+
+/// Runs the command in a folder.
+pub(crate) fn lodmark(folder: &TempDir, arguments: &[&str]) -> Output {
+    command(folder, arguments)
+        .output()
+        .expect("the command starts")
+}
+
+pub(crate) fn command(folder: &TempDir, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lodmark"));
+    command.current_dir(folder.path()).args(arguments);
+    command
+}
+
+pub(crate) fn code(output: &Output) -> i32 {
+    output.status.code().expect("no signal ended it")
+}
+
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Runs the command and holds it to an exit code; the answer is what it said on stderr.
+#[track_caller]
+pub(crate) fn expect(folder: &TempDir, exit: i32, arguments: &[&str]) -> String {
+    let output = lodmark(folder, arguments);
+    let said = stderr(&output);
+    assert_eq!(code(&output), exit, "{arguments:?} said {said}");
+    if exit > 1 {
+        assert_eq!(
+            stdout(&output),
+            "",
+            "{arguments:?}: a failure has no result"
+        );
+    }
+    said
+}
+
+/// Writes a mesh into a folder.
+pub(crate) fn put(folder: &TempDir, name: &str, mesh: &Mesh) -> PathBuf {
+    let path = folder.path().join(name);
+    io::write(&path, mesh).expect("writes");
+    path
+}
