@@ -7,9 +7,9 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DVec2, DVec3};
 use lodmark::{
     bound::{
-        cell::ViewCell,
-        planar::{Aperture, Projection, Rays, SegmentCell, segment_extent, segment_extents},
+        planar::{Aperture, Projection, Rays, ViewerSegment, segment_extent, segment_extents},
         point::extent,
+        view_cell::ViewCell,
     },
     mesh::generate::Pcg32,
 };
@@ -17,7 +17,7 @@ use lodmark::{
 const COUNT: usize = 10_000;
 
 struct Input {
-    cell: SegmentCell,
+    cell: ViewerSegment,
     aperture: Aperture,
     points: Vec<DVec2>,
     ends: Vec<DVec2>,
@@ -29,7 +29,7 @@ fn input() -> Input {
     let mut at = |size: f64| DVec2::new(random.unit() * size, random.unit() * size);
     let points: Vec<DVec2> = (0..COUNT).map(|_| at(20.0) + DVec2::ONE).collect();
     Input {
-        cell: SegmentCell::between(DVec2::ZERO, DVec2::new(3.0, 0.5)).expect("finite ends"),
+        cell: ViewerSegment::between(DVec2::ZERO, DVec2::new(3.0, 0.5)).expect("finite ends"),
         aperture: Aperture::degrees(0.5).expect("below 90"),
         ends: points.iter().map(|&p| p + at(2.0)).collect(),
         directions: (0..COUNT)

@@ -21,7 +21,7 @@ use std::env;
 
 use glam::DVec2;
 use lodmark::{
-    bound::planar::{Aperture, Projection, SegmentCell},
+    bound::planar::{Aperture, Projection, ViewerSegment},
     mesh::generate,
 };
 
@@ -65,15 +65,15 @@ fn main() {
 }
 
 /// Every wall in plan, and the viewers.
-fn walls(scene: &str) -> Option<(Vec<[DVec2; 2]>, SegmentCell)> {
+fn walls(scene: &str) -> Option<(Vec<[DVec2; 2]>, ViewerSegment)> {
     let (mesh, cell) = match scene {
         "city" => (
             generate::city(),
-            SegmentCell::line(DVec2::new(0.0, -6.0), DVec2::X),
+            ViewerSegment::line(DVec2::new(0.0, -6.0), DVec2::X),
         ),
         "forest" => (
             generate::forest(),
-            SegmentCell::between(DVec2::new(-10.0, 0.0), DVec2::new(10.0, 0.0)),
+            ViewerSegment::between(DVec2::new(-10.0, 0.0), DVec2::new(10.0, 0.0)),
         ),
         _ => return None,
     };
@@ -87,7 +87,7 @@ fn walls(scene: &str) -> Option<(Vec<[DVec2; 2]>, SegmentCell)> {
 }
 
 fn projections(
-    cell: &SegmentCell,
+    cell: &ViewerSegment,
     aperture: Aperture,
     count: u32,
     slants: i32,

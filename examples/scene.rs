@@ -19,7 +19,7 @@ use std::{env, path::Path, process::ExitCode};
 use glam::DVec3;
 use lodmark::{
     Error, Result,
-    bound::cell::{ViewCell, file},
+    bound::view_cell::{ViewCell, file},
     io,
     mesh::generate,
 };

@@ -9,8 +9,8 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    cell::{Shape, ViewCell},
     planar::{Aperture, Interval, tangents},
+    view_cell::{Shape, ViewCell},
 };
 use crate::num::math;
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{cell::ViewCell, point::error, surface::Replacement};
+use super::{point::error, surface::Replacement, view_cell::ViewCell};
 use crate::mesh::{Edge, Edges, Mesh};
 
 /// Angles in radians that tests would have called the error.

@@ -4,7 +4,6 @@
 //! Chibelushi 2005 keep a collapse inside a tolerance volume. A verifier that shares no code with either checks their
 //! claims.
 
-pub mod cell;
 pub mod correspondence;
 pub mod envelope;
 pub mod face;
@@ -13,6 +12,7 @@ pub mod planar;
 pub mod point;
 pub mod region;
 pub mod surface;
-pub mod switch;
+pub mod switch_distance;
 pub mod tolerance;
 pub mod verify;
+pub mod view_cell;

@@ -8,9 +8,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    cell::{Shape, ViewCell},
     planar::Aperture,
     point::extent,
+    view_cell::{Shape, ViewCell},
 };
 use crate::{
     Error, Result,

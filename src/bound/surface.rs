@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{cell::ViewCell, point::error};
+use super::{point::error, view_cell::ViewCell};
 use crate::{
     Progress, Result,
     num::math::{asin, length},

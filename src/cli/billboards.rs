@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use super::{Common, Verdict, report, source, terminal::Terminal};
 use crate::{
     Error, Result,
-    bound::{cell, planar::Aperture},
+    bound::{planar::Aperture, view_cell},
     output,
     simplify::billboards::{self, Limit, Up},
 };
@@ -79,7 +79,7 @@ impl Options {
 
 pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let wanted = options.resolved()?;
-    let cell = cell::file::read(&options.cell)?;
+    let cell = view_cell::file::read(&options.cell)?;
     let mesh = source::read(&options.input, true, terminal)?;
     source::require_triangles(&options.input, &mesh)?;
     let cloud = billboards::billboards(&mesh, &cell, &wanted, terminal)?;

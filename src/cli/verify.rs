@@ -8,8 +8,8 @@ use super::{Common, Verdict, report, source, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
-        cell,
         verify::{self, AngleReport, Claim, DistanceReport, Property, Record},
+        view_cell,
     },
     io,
     mesh::{self, Mesh},
@@ -140,7 +140,7 @@ fn angles(
             "--error-deg needs --cell FILE: the viewpoints that the bound holds for".into(),
         ));
     };
-    let cell = cell::file::read(path)?;
+    let cell = view_cell::file::read(path)?;
     let record = match &options.bound {
         Some(path) => Some(Record::from_bytes(&io::bytes::read(path)?, path)?),
         None => None,

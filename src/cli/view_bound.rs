@@ -4,7 +4,7 @@ use std::{io::Write, path::PathBuf};
 
 use crate::{
     Error, Result,
-    bound::cell,
+    bound::view_cell,
     io,
     mesh::Mesh,
     num::math,
@@ -87,7 +87,10 @@ impl ViewBound {
                 ));
             }
         };
-        Ok(ViewBoundedOptions::new(cell::file::read(path)?, error_deg))
+        Ok(ViewBoundedOptions::new(
+            view_cell::file::read(path)?,
+            error_deg,
+        ))
     }
 
     /// The angle in degrees that so many pixels take up in the middle of the screen; elsewhere they take up less.

@@ -16,7 +16,7 @@ use glam::DVec3;
 
 use super::Allowance;
 use crate::{
-    bound::cell::{Shape, ViewCell},
+    bound::view_cell::{Shape, ViewCell},
     num::{
         Frame,
         math::{cos, length, sin, unit},

@@ -6,15 +6,15 @@
 //! triangle fit together without a gap, so a bound for all pieces is one for all points.
 
 mod angle;
-mod fan;
 mod file;
+mod layout;
 mod outline;
 mod pairs;
 mod pieces;
+mod sectors;
 mod sides;
-mod star;
 
 pub use angle::AngleLimit;
-pub use fan::{Collapse, Face, Fan};
+pub use layout::{Collapse, Face, Fan};
 pub use pairs::pairs;
 pub use pieces::{Allowance, Answer, Corner, Correspondence, Piece, Scratch};

@@ -18,9 +18,9 @@
 use glam::DVec3;
 
 use super::{
-    fan::{Before, Fan, Part},
+    layout::{Before, Fan, Part},
     outline::{self, OutlineScratch, outlines, tidy, turn_to_fan},
-    star::CutScratch,
+    sectors::CutScratch,
 };
 use crate::num::{fixed::Weights31, math::sqrt};
 

@@ -27,7 +27,7 @@
 use glam::DVec2;
 
 use super::{
-    Aperture, SegmentCell,
+    Aperture, ViewerSegment,
     point::{Tangent, reach_of, tangents},
 };
 use crate::{Error, Result, num::math};
@@ -88,7 +88,7 @@ impl Interval {
 /// in common.
 #[derive(Clone, Debug)]
 pub struct Projection {
-    cell: SegmentCell,
+    cell: ViewerSegment,
     direction: DVec2,
     sin: f64,
     cos: f64,
@@ -107,7 +107,7 @@ pub struct Projection {
 impl Projection {
     /// Projections along the unit vector `direction` on the lines across it, for viewers in `cell` who accept `aperture`.
     #[must_use]
-    pub fn new(cell: &SegmentCell, direction: DVec2, aperture: Aperture) -> Self {
+    pub fn new(cell: &ViewerSegment, direction: DVec2, aperture: Aperture) -> Self {
         let local = cell.turn(direction);
         let end = |x: f64| x.is_finite().then(|| DVec2::new(x * local.y, x * local.x));
         let mirrored = DVec2::new(local.x, -local.y);
@@ -130,7 +130,7 @@ impl Projection {
     /// # Errors
     /// [`Error::Usage`] where the lines are parallel to the direction, so that nothing projected along it reaches them.
     pub fn oblique(
-        cell: &SegmentCell,
+        cell: &ViewerSegment,
         direction: DVec2,
         normal: DVec2,
         aperture: Aperture,

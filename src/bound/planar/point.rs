@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::{Aperture, SegmentCell};
+use super::{Aperture, ViewerSegment};
 
 /// How far a point may move along a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +138,7 @@ pub(super) fn extent_in_frame(
 /// the aperture, with the viewpoint that sets the limit. 0 for a point in the cell.
 #[must_use]
 pub fn segment_extent(
-    cell: &SegmentCell,
+    cell: &ViewerSegment,
     point: DVec2,
     direction: DVec2,
     aperture: Aperture,

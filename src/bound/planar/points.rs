@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 
-use super::{Aperture, SegmentCell, point::extent_in_frame};
+use super::{Aperture, ViewerSegment, point::extent_in_frame};
 use crate::{Error, Result};
 
 /// Points and the unit directions they may move in, one column each, all of one length.
@@ -21,12 +21,12 @@ pub struct Rays<'a> {
 }
 
 /// Writes how far every point may move into `lengths` and where its max viewpoint is into `viewpoints`: the abscissa
-/// in the cell's frame ([`SegmentCell::viewpoint`]), NaN where no distance is too far.
+/// in the cell's frame ([`ViewerSegment::viewpoint`]), NaN where no distance is too far.
 ///
 /// # Errors
 /// [`Error::Usage`] if the columns are not all of one length.
 pub fn segment_extents(
-    cell: &SegmentCell,
+    cell: &ViewerSegment,
     rays: Rays<'_>,
     aperture: Aperture,
     lengths: &mut [f64],

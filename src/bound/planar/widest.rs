@@ -7,7 +7,7 @@
 
 use glam::DVec2;
 
-use super::SegmentCell;
+use super::ViewerSegment;
 use crate::num::math;
 
 /// The worst view of a replaced point.
@@ -22,7 +22,7 @@ pub struct WidestAngle {
 /// The largest angle between `point` and `replacement` seen from `cell`. Where the segment between them touches the
 /// cell it is pi: viewers beside the contact see up to that.
 #[must_use]
-pub fn segment_error(cell: &SegmentCell, point: DVec2, replacement: DVec2) -> WidestAngle {
+pub fn segment_error(cell: &ViewerSegment, point: DVec2, replacement: DVec2) -> WidestAngle {
     let (m, s) = (cell.enter(point), cell.enter(replacement));
     let mut worst = WidestAngle {
         angle: 0.0,

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::edge::Edge;
-use crate::bound::cell::{Shape, ViewCell};
+use crate::bound::view_cell::{Shape, ViewCell};
 
 /// What is asked of the viewpoints of a cell.
 pub(super) trait Question {

@@ -10,7 +10,7 @@ use super::{
     edge::Edge,
     plane,
 };
-use crate::bound::cell::ViewCell;
+use crate::bound::view_cell::ViewCell;
 
 /// The largest angle under which a replacement is seen, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::{
     plane,
     viewpoint::extent_from,
 };
-use crate::{bound::cell::ViewCell, num::math::unit};
+use crate::{bound::view_cell::ViewCell, num::math::unit};
 
 /// How far a point may move in a direction, and who says so.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Cell, Neighborhood, Quadratic, shadows};
+use super::{Neighborhood, Polyhedron, Quadratic, shadows};
 
 /// Cells of a volume, at most; with more of them the collapse counts as not allowed.
 pub const CELLS: usize = 256;
@@ -26,7 +26,7 @@ pub enum Source {
 /// Where a new vertex may lie; relative to the neighbourhood's origin.
 #[derive(Clone, Debug, Default)]
 pub struct Volume {
-    cells: Vec<Cell>,
+    cells: Vec<Polyhedron>,
     tolerance: f64,
 }
 
@@ -69,7 +69,7 @@ impl Volume {
 
     /// The cells.
     #[must_use]
-    pub fn cells(&self) -> &[Cell] {
+    pub fn cells(&self) -> &[Polyhedron] {
         &self.cells
     }
 
@@ -95,12 +95,12 @@ impl Volume {
 }
 
 /// The prisms inside the convex kernel.
-fn base(around: &Neighborhood, bound: f64, tolerance: f64) -> Vec<Cell> {
+fn base(around: &Neighborhood, bound: f64, tolerance: f64) -> Vec<Polyhedron> {
     let mut cells = Vec::new();
     for prism in around.prisms() {
         let margin = DVec3::splat(2.0 * bound);
         let [a, b, c] = prism.points;
-        let cuboid = Cell::cuboid(a.min(b).min(c) - margin, a.max(b).max(c) + margin);
+        let cuboid = Polyhedron::cuboid(a.min(b).min(c) - margin, a.max(b).max(c) + margin);
         let mut bounds = prism.sides(bound).into_iter().chain(around.kernel());
         let cell = bounds.try_fold(cuboid, |cell, bound| cell.cut(bound, tolerance));
         cells.extend(cell);

@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
-    cover::Gap,
+    angle_tally::{Found, Seen},
+    gaps::Gap,
     nearest::Facets,
     record::{ONE, Record},
-    sight::{Viewpoints, angle, tangent2},
-    sighting::{Found, Seen},
-    spread::{Spot, Spread},
+    samples::{Spot, Spread},
+    viewpoints::{Viewpoints, angle, tangent2},
 };
 use crate::{
     Error, Progress, Result,
-    bound::cell::ViewCell,
+    bound::view_cell::ViewCell,
     mesh::Mesh,
     num::{
         Frame,

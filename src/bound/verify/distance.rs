@@ -2,7 +2,7 @@
 //!
 //! By samples: points spread over each surface, along its edges, and its vertices, each with its distance to the other
 //! surface. And by proof: every triangle is cut until it is certain that it lies within the distance, or a point of it
-//! does not ([`super::proof`]). A claim is broken only by a point that was measured; where neither holds, the report says
+//! does not ([`super::distance_bound`]). A claim is broken only by a point that was measured; where neither holds, the report says
 //! what part of the surface is undecided, and the distance that is proven. Distances are Euclidean, computed in a
 //! frame scaled to the reference; a measured distance breaks a claim where it is larger by a billionth and by 2e-10 of the
 //! reference's diagonal, far above rounding. The same result for any number of threads.
@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
+    distance_bound,
     nearest::Facets,
-    proof,
-    spread::{Spot, Spread},
+    samples::{Spot, Spread},
 };
 use crate::{
     Error, Progress, Result,
@@ -309,14 +309,15 @@ impl Check<'_> {
                 start as u64,
                 tasks as u64,
             )?;
-            let group: Vec<Vec<proof::Finding>> = (start..tasks.min(start + GROUP))
+            let group: Vec<Vec<distance_bound::Finding>> = (start..tasks.min(start + GROUP))
                 .into_par_iter()
                 .map(|i| {
                     let first = i * TRIANGLES;
                     let last = self.from.corners.len().min(first + TRIANGLES);
                     let mut near = 0;
                     let settle = |&corners| {
-                        let finding = proof::settle(&self.to.facets, corners, self.most, near);
+                        let finding =
+                            distance_bound::settle(&self.to.facets, corners, self.most, near);
                         near = finding.near;
                         finding
                     };

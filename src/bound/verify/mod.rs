@@ -6,19 +6,19 @@
 //! [`Record`], under more than an angle.
 
 mod angle;
-mod cover;
+mod angle_bound;
+mod angle_tally;
+mod cell_contact;
 mod distance;
-mod mapped;
-mod meeting;
+mod distance_bound;
+mod gaps;
 mod nearest;
-mod proof;
+mod piece_bounds;
 mod record;
-mod sight;
-mod sighting;
-mod spread;
-mod worst;
+mod samples;
+mod viewpoints;
 
 pub use angle::{AngleReport, Property, Sighting, angles};
-pub use cover::Gap;
 pub use distance::{Claim, Direction, DistanceReport, Witness, distance};
+pub use gaps::Gap;
 pub use record::Record;

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::sight::{angle, tangent2};
+use super::viewpoints::{angle, tangent2};
 use crate::num::math::{atan2, sqrt};
 
 /// Facets in a leaf.

@@ -12,10 +12,10 @@ use super::{Common, Verdict, report, source, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
-        cell::file,
         correspondence,
         heuristics::{self, Claims},
         surface::{self, Effort, Given, Measure, Pair, SurfaceBound},
+        view_cell::file,
     },
     io,
     mesh::{self, Mesh},

@@ -7,8 +7,8 @@ use glam::DVec3;
 use crate::{
     Error, Progress, Result,
     bound::{
-        cell::ViewCell,
         surface::{SurfaceBound, Worst},
+        view_cell::ViewCell,
     },
     cli::terminal::Terminal,
     io,

@@ -7,9 +7,9 @@ use glam::DVec3;
 use crate::{
     Error, Result,
     bound::{
-        cell::{Shape, ViewCell, file},
         planar::Aperture,
         region::{self, Profile},
+        view_cell::{Shape, ViewCell, file},
     },
     cli::{Common, Verdict, report, source, terminal::Terminal},
     io,

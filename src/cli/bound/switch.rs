@@ -4,7 +4,7 @@ use crate::{
     Result,
     bound::{
         planar::Aperture,
-        switch::{aperture_of_pixels, switch_distance},
+        switch_distance::{aperture_of_pixels, switch_distance},
     },
 };
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Collector;
 use crate::{
     Error, Result, Silent,
-    bound::{cell::ViewCell, planar::Aperture},
+    bound::{planar::Aperture, view_cell::ViewCell},
     mesh::{Mesh, generate},
     output::png::Picture,
     simplify::billboards::{Limit, Options, billboards},

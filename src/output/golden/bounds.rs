@@ -6,13 +6,13 @@ use super::Collector;
 use crate::{
     Error, Result, Silent,
     bound::{
-        cell::{ViewCell, file},
         heuristics,
         planar::Aperture,
         point::{error, extent},
         region,
         surface::{Effort, Measure, measure},
-        switch::switch_distance,
+        switch_distance::switch_distance,
+        view_cell::{ViewCell, file},
     },
     mesh::generate,
     simplify::{Amount, NearestTriangle, Options, originals, simplify},

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
     Error, Result, Silent,
-    bound::{cell::ViewCell, tolerance::Source},
+    bound::{tolerance::Source, view_cell::ViewCell},
     mesh::{Materials, Mesh, MeshParts, canonical, generate},
     metric::{
         luma::ViewErrors,

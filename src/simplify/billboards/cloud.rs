@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     Progress, Result,
-    bound::{cell::ViewCell, planar::Interval},
+    bound::{planar::Interval, view_cell::ViewCell},
     mesh::Mesh,
     num::math,
 };

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Quad, plan::PlanCell, plan::Up};
 use crate::{
-    bound::{cell::ViewCell, planar::segment_error},
+    bound::{planar::segment_error, view_cell::ViewCell},
     mesh::Mesh,
     num::math,
 };

@@ -3,7 +3,7 @@
 
 use super::{Limit, plan::Up};
 use crate::{
-    bound::{cell::ViewCell, face::face_interval, planar::Interval},
+    bound::{face::face_interval, planar::Interval, view_cell::ViewCell},
     mesh::Mesh,
 };
 

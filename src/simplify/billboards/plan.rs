@@ -9,8 +9,8 @@ use super::{Limit, bearing::Bearing};
 use crate::{
     Error, Result,
     bound::{
-        cell::{Shape, ViewCell},
-        planar::{Interval, Projection, SegmentCell},
+        planar::{Interval, Projection, ViewerSegment},
+        view_cell::{Shape, ViewCell},
     },
     mesh::Mesh,
 };
@@ -62,7 +62,7 @@ impl Up {
 #[derive(Clone, Debug)]
 pub(super) struct PlanCell {
     /// Boundary: whoever is inside sees no more than the boundary does.
-    pub(super) sides: Vec<SegmentCell>,
+    pub(super) sides: Vec<ViewerSegment>,
     inside: Inside,
 }
 
@@ -97,7 +97,7 @@ impl PlanCell {
                     return everywhere(if half_space { "half-space" } else { "plane" });
                 }
                 let (point, normal) = (up.plan(*point), up.plan(*normal));
-                let sides = vec![SegmentCell::line(point, normal.perp())?];
+                let sides = vec![ViewerSegment::line(point, normal.perp())?];
                 if !half_space {
                     return nothing(sides);
                 }
@@ -108,9 +108,9 @@ impl PlanCell {
                 let along = up.plan(*direction);
                 let point = up.plan(*point);
                 nothing(vec![if along.length_squared() < 1e-24 {
-                    SegmentCell::between(point, point)?
+                    ViewerSegment::between(point, point)?
                 } else {
-                    SegmentCell::line(point, along)?
+                    ViewerSegment::line(point, along)?
                 }])
             }
             Shape::Point(_)
@@ -120,11 +120,11 @@ impl PlanCell {
                 let corners = cell.corners().unwrap_or_default();
                 let hull = convex_hull(corners.iter().map(|&c| up.plan(c)).collect());
                 match hull[..] {
-                    [a] => nothing(vec![SegmentCell::between(a, a)?]),
-                    [a, b] => nothing(vec![SegmentCell::between(a, b)?]),
+                    [a] => nothing(vec![ViewerSegment::between(a, a)?]),
+                    [a, b] => nothing(vec![ViewerSegment::between(a, b)?]),
                     _ => {
                         let side =
-                            |i: usize| SegmentCell::between(hull[i], hull[(i + 1) % hull.len()]);
+                            |i: usize| ViewerSegment::between(hull[i], hull[(i + 1) % hull.len()]);
                         let sides = (0..hull.len()).map(side).collect::<Result<_>>()?;
                         let inside = Inside::Polygon(hull);
                         Ok(Self { sides, inside })
@@ -208,7 +208,7 @@ fn separated(polygon: &[DVec2], points: &[DVec2]) -> bool {
 }
 
 /// True where viewers on a segment stand in a triangle that is no segment itself, its border included.
-fn stands_in(side: &SegmentCell, corners: [DVec2; 3]) -> bool {
+fn stands_in(side: &ViewerSegment, corners: [DVec2; 3]) -> bool {
     let [a, b, c] = corners.map(|p| side.enter(p));
     if (b - a).perp_dot(c - a) == 0.0 {
         return false;
@@ -233,7 +233,7 @@ fn stands_in(side: &SegmentCell, corners: [DVec2; 3]) -> bool {
     low <= last && first <= high
 }
 
-fn segment_distance(side: &SegmentCell, a: DVec2, b: DVec2) -> f64 {
+fn segment_distance(side: &ViewerSegment, a: DVec2, b: DVec2) -> f64 {
     let (a, b) = (side.enter(a), side.enter(b));
     let [first, last] = side.ends();
     let crosses = (a.y < 0.0) != (b.y < 0.0) && {

@@ -318,7 +318,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        bound::{cell::ViewCell, planar::Aperture},
+        bound::{planar::Aperture, view_cell::ViewCell},
         mesh::generate::Pcg32,
         simplify::billboards::Limit,
     };

@@ -146,7 +146,7 @@ impl Limits {
 mod tests {
     use super::*;
     use crate::{
-        bound::planar::{Aperture, Projection, SegmentCell},
+        bound::planar::{Aperture, Projection, ViewerSegment},
         mesh::generate::Pcg32,
     };
 
@@ -169,9 +169,9 @@ mod tests {
                 .collect();
             let (from, to, centre) = (at(4.0), at(4.0), at(9.0));
             let cells = [
-                SegmentCell::between(from, to),
-                SegmentCell::between(from, from),
-                SegmentCell::line(from, to),
+                ViewerSegment::between(from, to),
+                ViewerSegment::between(from, from),
+                ViewerSegment::line(from, to),
             ];
             let degrees = between(0.0, 1.0) * [0.1, 1.0, 20.0][case % 3];
             let aperture = Aperture::degrees(degrees).expect("an angle");

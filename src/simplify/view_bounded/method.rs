@@ -16,8 +16,8 @@ use super::super::memoryless::{self, Memoryless, MemorylessOptions, Objective};
 use crate::{
     Error, Progress, Result,
     bound::{
-        cell::ViewCell,
         correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
+        view_cell::ViewCell,
     },
     collapse::{Admitted, LiveMesh, Method, Patch, PatchFace, Proposal, Refusal, Site},
 };

@@ -8,8 +8,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         correspondence::{Collapse, Correspondence, Face, Fan, Scratch},
+        view_cell::ViewCell,
     },
     mesh::{Mesh, canonical},
     simplify::{Amount, Options, simplify, view_bounded::ViewBoundedOptions},

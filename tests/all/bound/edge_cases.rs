@@ -7,12 +7,12 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         correspondence::Correspondence,
         planar::Aperture,
         region::{profile, profile_normal, shell},
         surface::{Effort, Measure, measure},
         verify::{AngleReport, Claim, Record, angles, distance},
+        view_cell::ViewCell,
     },
     io,
     mesh::{Mesh, MeshParts, canonical, generate},
@@ -325,7 +325,7 @@ fn scene() -> TempDir {
         fs::write(dir.path().join(format!("{name}.json")), text).expect("writes");
     }
     for (name, cell) in cells_without_end() {
-        let text = lodmark::bound::cell::file::to_json(&cell).expect("JSON");
+        let text = lodmark::bound::view_cell::file::to_json(&cell).expect("JSON");
         fs::write(dir.path().join(format!("{name}.json")), text).expect("writes");
     }
     dir

@@ -11,8 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 use lodmark::bound::{
-    cell::{Shape, ViewCell},
     point::{Aperture, Extent, angle_from, error, extent, extent_from},
+    view_cell::{Shape, ViewCell},
 };
 
 fn at(x: f64, y: f64, z: f64) -> DVec3 {

@@ -10,12 +10,12 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         heuristics,
         planar::Aperture,
         region::profile,
         surface::{Effort, Given, Measure, Pair, SurfaceBound, measure},
-        switch::{aperture_of_pixels, safe_view_distance, switch_distance},
+        switch_distance::{aperture_of_pixels, safe_view_distance, switch_distance},
+        view_cell::ViewCell,
     },
     mesh::Mesh,
     simplify::{NearestTriangle, originals},

@@ -6,7 +6,7 @@ mod deviation;
 
 use glam::DVec3;
 use lodmark::bound::tolerance::{
-    Cell, HalfSpace, Neighborhood, OldFace, Prism, Quadratic, Source, Volume, shadows,
+    HalfSpace, Neighborhood, OldFace, Polyhedron, Prism, Quadratic, Source, Volume, shadows,
 };
 
 use crate::support::Random;
@@ -440,7 +440,7 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
 fn cuts_of_a_cell_add_up_to_its_volume() {
     let mut random = Random(0xce11);
     for _ in 0..cases() / 4 {
-        let mut cell = Cell::cuboid(DVec3::splat(-1.0), DVec3::ONE);
+        let mut cell = Polyhedron::cuboid(DVec3::splat(-1.0), DVec3::ONE);
         let mut expected = 8.0;
         for _ in 0..6 {
             assert!(

@@ -8,7 +8,7 @@ mod hostile;
 
 use glam::DVec3;
 use lodmark::{
-    bound::cell::{Shape, ViewCell, file},
+    bound::view_cell::{Shape, ViewCell, file},
     num::Frame,
 };
 use proptest::prelude::*;

@@ -9,7 +9,7 @@ use std::{
 use glam::DVec3;
 use lodmark::{
     Silent,
-    bound::cell::ViewCell,
+    bound::view_cell::ViewCell,
     collapse::{
         Engine, LiveMesh, Method, Patch, Proposal, Refusal, Ring, RingFace, Rules, Schedule, Site,
         Target, foldedness,

@@ -15,7 +15,7 @@ mod measured;
 use glam::{DVec2, DVec3};
 use lodmark::{
     Silent,
-    bound::{cell::ViewCell, planar::Aperture},
+    bound::{planar::Aperture, view_cell::ViewCell},
     mesh::{
         Mesh,
         generate::{self, Pcg32},

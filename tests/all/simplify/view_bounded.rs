@@ -6,8 +6,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         verify::{AngleReport, Record, angles},
+        view_cell::ViewCell,
     },
     collapse::{Refusal, Replay},
     mesh::{Mesh, canonical, generate},

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use lodmark::bound::{
-    cell::ViewCell,
     correspondence::{Allowance, AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
+    view_cell::ViewCell,
 };
 use proptest::prelude::*;
 

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
+use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
 use lodmark::mesh::generate::Pcg32;
 
 use super::seen::{angle, between, largest, largest_of_two};
@@ -203,9 +203,9 @@ impl Case {
     pub(super) fn interval(&self) -> Interval {
         let [a, b] = self.cell;
         let cell = if self.endless {
-            SegmentCell::on_x_axis(a.x, (b.x - a.x) * f64::INFINITY)
+            ViewerSegment::on_x_axis(a.x, (b.x - a.x) * f64::INFINITY)
         } else {
-            SegmentCell::between(a, b).expect("finite ends")
+            ViewerSegment::between(a, b).expect("finite ends")
         };
         let aperture = Aperture::radians(self.theta).expect("drawn below a right angle");
         let projection = if self.normal == self.direction {

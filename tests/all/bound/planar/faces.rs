@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
+use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
 
 use super::{
     case::{CLASSES, Case, Class, SCALE, draw},
@@ -48,14 +48,14 @@ fn a_point_of_a_face_is_seen_to_move_more_than_its_interval_claims() {
 #[test]
 fn without_tolerance_a_face_has_a_line_other_than_its_own() {
     let none = Aperture::radians(0.0).expect("zero is an angle");
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let (a, b) = (DVec2::new(2.0, 3.0), DVec2::new(5.0, 3.0));
     let own = Projection::new(&cell, DVec2::Y, none).interval(a, b);
     assert_eq!(own, Interval { min: 3.0, max: 3.0 });
     let slanted = Projection::new(&cell, DVec2::from_angle(1.5), none).interval(a, b);
     assert!(slanted.is_empty());
     // One viewpoint that sees the face from its end sees nothing of how far its points are.
-    let viewpoint = SegmentCell::on_x_axis(2.0, 2.0);
+    let viewpoint = ViewerSegment::on_x_axis(2.0, 2.0);
     let (a, b) = (DVec2::new(2.0, 3.0), DVec2::new(2.0, 5.0));
     let behind = Projection::new(&viewpoint, DVec2::Y, none).interval(a, b);
     assert_eq!(
@@ -82,7 +82,7 @@ fn the_own_line_of_a_face_is_refused() {
         let (a, b, e, f) = (at(), at(), at(), at());
         let along = b - a;
         let normal = along.perp() / along.length();
-        let cell = SegmentCell::between(e, f).expect("finite ends");
+        let cell = ViewerSegment::between(e, f).expect("finite ends");
         for theta in [0.0, 1e-4, 0.1, 1.5] {
             let aperture = Aperture::radians(theta).expect("below a right angle");
             let interval = Projection::new(&cell, normal, aperture).interval(a, b);
@@ -99,7 +99,7 @@ fn the_own_line_of_a_face_is_refused() {
 #[test]
 fn a_line_cell_limits_a_face_elsewhere_than_at_its_ends() {
     let (count, mut random) = cases(201);
-    let line = SegmentCell::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
+    let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
     for number in 0..count {
         let mut at = || {
             DVec2::new(
@@ -169,9 +169,9 @@ fn a_quick_look_at_a_point_refuses_an_offset_that_its_face_may_have() {
             let case = draw(class, &mut random);
             let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
             let [a, b] = case.cell;
-            let mut cells = vec![SegmentCell::between(a, b).expect("finite ends")];
+            let mut cells = vec![ViewerSegment::between(a, b).expect("finite ends")];
             if a != b {
-                cells.push(SegmentCell::line(a, b - a).expect("two points"));
+                cells.push(ViewerSegment::line(a, b - a).expect("two points"));
             }
             for cell in cells {
                 let projection = Projection::new(&cell, case.direction, aperture);

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use lodmark::bound::planar::{Aperture, Interval, Projection, SegmentCell};
+use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
 use lodmark::mesh::generate::Pcg32;
 
 use super::{
@@ -149,7 +149,7 @@ fn viewers_without_end_see_a_face_move_on_a_slanted_line_more_than_its_interval_
 #[test]
 fn a_line_cell_limits_a_face_on_a_slanted_line_elsewhere_than_at_its_ends() {
     let (count, mut random) = cases(311);
-    let line = SegmentCell::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
+    let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
     for number in 0..count {
         let mut at = || {
             DVec2::new(
@@ -197,7 +197,7 @@ fn the_own_line_of_a_face_is_refused_to_some_direction() {
         let (a, b, e, f) = (at(), at(), at(), at());
         let normal = (b - a).perp().normalize();
         let direction = turned(normal, between(&mut random, -1.5, 1.5));
-        let cell = SegmentCell::between(e, f).expect("finite ends");
+        let cell = ViewerSegment::between(e, f).expect("finite ends");
         for theta in [0.0, 1e-4, 0.1, 1.5] {
             let aperture = Aperture::radians(theta).expect("below a right angle");
             let interval = Projection::oblique(&cell, direction, normal, aperture)
@@ -219,7 +219,7 @@ fn a_direction_and_its_opposite_or_a_line_and_itself_give_two_answers() {
     for number in 0..count {
         let case = draw(CLASSES[number as usize % CLASSES.len()], &mut random);
         let [a, b] = case.cell;
-        let cell = SegmentCell::between(a, b).expect("finite ends");
+        let cell = ViewerSegment::between(a, b).expect("finite ends");
         let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
         let d = case.direction;
         let interval = |d: DVec2, n: DVec2| {
@@ -244,12 +244,12 @@ fn a_direction_and_its_opposite_or_a_line_and_itself_give_two_answers() {
 #[test]
 fn without_tolerance_a_face_has_a_slanted_line_other_than_its_own() {
     let none = Aperture::radians(0.0).expect("zero is an angle");
-    let interval = |cell: SegmentCell, d: DVec2, n: DVec2, a: DVec2, b: DVec2| {
+    let interval = |cell: ViewerSegment, d: DVec2, n: DVec2, a: DVec2, b: DVec2| {
         Projection::oblique(&cell, d, n, none)
             .expect("not parallel")
             .interval(a, b)
     };
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let (a, b) = (DVec2::new(2.0, 3.0), DVec2::new(5.0, 3.0));
     let slanted = DVec2::new(0.6, 0.8);
     let own = interval(cell, slanted, DVec2::Y, a, b);
@@ -259,7 +259,7 @@ fn without_tolerance_a_face_has_a_slanted_line_other_than_its_own() {
     );
     assert!(interval(cell, DVec2::Y, slanted, a, b).is_empty());
     // One viewpoint that sees the face from its end sees nothing of how far its points are, up to itself.
-    let viewpoint = SegmentCell::on_x_axis(2.0, 2.0);
+    let viewpoint = ViewerSegment::on_x_axis(2.0, 2.0);
     let (a, b) = (DVec2::new(2.0, 3.0), DVec2::new(2.0, 5.0));
     for slanted in [slanted, DVec2::new(-0.6, 0.8)] {
         let here = 2.0 * slanted.x;
@@ -277,7 +277,7 @@ fn a_face_along_the_direction_through_the_viewpoint_goes_beside_it() {
         let normal = turned(DVec2::Y, slant);
         let aperture = Aperture::degrees(degrees).expect("below 90");
         for x in [1.0, 4.0] {
-            let cell = SegmentCell::on_x_axis(x, x);
+            let cell = ViewerSegment::on_x_axis(x, x);
             let projection =
                 Projection::oblique(&cell, DVec2::Y, normal, aperture).expect("not parallel");
             let around = projection.interval(DVec2::new(x, -1.0), DVec2::new(x, 2.0));
@@ -292,7 +292,7 @@ fn a_face_along_the_direction_through_the_viewpoint_goes_beside_it() {
 
 #[test]
 fn a_line_along_the_direction_is_projected_on() {
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let aperture = Aperture::degrees(1.0).expect("below 90");
     for (direction, normal) in [
         (DVec2::X, DVec2::Y),
@@ -319,9 +319,9 @@ fn a_quick_look_at_a_point_refuses_a_slanted_line_that_its_face_may_have() {
         };
         let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
         let [a, b] = case.cell;
-        let mut cells = vec![SegmentCell::between(a, b).expect("finite ends")];
+        let mut cells = vec![ViewerSegment::between(a, b).expect("finite ends")];
         if a != b {
-            cells.push(SegmentCell::line(a, b - a).expect("two points"));
+            cells.push(ViewerSegment::line(a, b - a).expect("two points"));
         }
         for cell in cells {
             let projection =

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use lodmark::bound::planar::{
-    Aperture, Rays, SegmentCell, segment_error, segment_extent, segment_extents, viewpoint_extent,
+    Aperture, Rays, ViewerSegment, segment_error, segment_extent, segment_extents, viewpoint_extent,
 };
 
 use super::seen::{angle, between, cases, largest};
@@ -15,8 +15,8 @@ struct Case {
 }
 
 impl Case {
-    fn cell(&self) -> SegmentCell {
-        SegmentCell::between(self.cell[0], self.cell[1]).expect("finite ends")
+    fn cell(&self) -> ViewerSegment {
+        ViewerSegment::between(self.cell[0], self.cell[1]).expect("finite ends")
     }
 
     fn viewpoint(&self, s: f64) -> DVec2 {
@@ -107,7 +107,7 @@ fn a_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
         }
         let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
         let along = case.cell[1] - case.cell[0];
-        let line = SegmentCell::line(case.cell[0], along).expect("two points");
+        let line = ViewerSegment::line(case.cell[0], along).expect("two points");
         let extent = segment_extent(&line, case.point, case.direction, aperture);
         // Viewpoints of the whole line, as the tangent of an angle about the foot of the point.
         let unit = along / along.length();
@@ -197,7 +197,7 @@ fn a_column_of_extents_has_other_bits_than_one_by_one() {
 #[test]
 fn a_point_at_a_viewpoint_may_still_move() {
     let aperture = Aperture::degrees(10.0).expect("below 90");
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     for x in [-1.0, -0.3, 0.0, 1.0] {
         for gamma in [0.0, 0.4, 1.57, 3.0, 4.0] {
             let d = DVec2::from_angle(gamma);
@@ -216,7 +216,7 @@ fn a_point_at_a_viewpoint_may_still_move() {
 fn a_point_on_the_line_beside_its_segment_is_taken_for_one_in_it() {
     let theta = 0.1;
     let aperture = Aperture::radians(theta).expect("small");
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let extent = segment_extent(&cell, DVec2::new(4.0, 0.0), DVec2::Y, aperture);
     assert!(
         (extent.length - 3.0 * theta.tan()).abs() < 1e-12,
@@ -232,8 +232,8 @@ fn a_point_on_the_line_beside_its_segment_is_taken_for_one_in_it() {
 #[test]
 fn without_tolerance_a_point_may_move_across_the_sight() {
     let none = Aperture::radians(0.0).expect("zero is an angle");
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
-    let line = SegmentCell::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
+    let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
     for d in [
         DVec2::Y,
         DVec2::X,
@@ -246,7 +246,7 @@ fn without_tolerance_a_point_may_move_across_the_sight() {
             assert_eq!(extent.length, 0.0, "{d}");
         }
     }
-    let viewpoint = SegmentCell::on_x_axis(2.0, 2.0);
+    let viewpoint = ViewerSegment::on_x_axis(2.0, 2.0);
     let point = DVec2::new(2.0, 3.0);
     assert_eq!(
         segment_extent(&viewpoint, point, DVec2::Y, none).length,
@@ -271,7 +271,7 @@ fn an_angle_that_bounds_nothing_is_taken() {
     }
     assert!(Aperture::radians(std::f64::consts::FRAC_PI_2).is_err());
     let wide = Aperture::degrees(89.9999).expect("below 90");
-    let cell = SegmentCell::on_x_axis(-1.0, 1.0);
+    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let extent = segment_extent(&cell, DVec2::new(0.0, 1.0), DVec2::X, wide);
     let seen = largest(
         |s| {
@@ -289,10 +289,10 @@ fn an_angle_that_bounds_nothing_is_taken() {
 #[test]
 fn a_cell_without_place_is_taken() {
     for bad in [f64::NAN, f64::INFINITY] {
-        assert!(SegmentCell::between(DVec2::ZERO, DVec2::new(bad, 0.0)).is_err());
-        assert!(SegmentCell::line(DVec2::new(bad, 0.0), DVec2::X).is_err());
+        assert!(ViewerSegment::between(DVec2::ZERO, DVec2::new(bad, 0.0)).is_err());
+        assert!(ViewerSegment::line(DVec2::new(bad, 0.0), DVec2::X).is_err());
     }
-    assert!(SegmentCell::line(DVec2::ZERO, DVec2::ZERO).is_err());
-    let tiny = SegmentCell::between(DVec2::ZERO, DVec2::new(1e-200, 1e-200)).expect("two points");
+    assert!(ViewerSegment::line(DVec2::ZERO, DVec2::ZERO).is_err());
+    let tiny = ViewerSegment::between(DVec2::ZERO, DVec2::new(1e-200, 1e-200)).expect("two points");
     assert!(tiny.ends()[1] > 1.4e-200, "{tiny:?}");
 }

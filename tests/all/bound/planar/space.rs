@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 use lodmark::{
     bound::{
-        cell::ViewCell,
         face::{conservative_interval, face_interval},
         planar::{Aperture, Interval},
+        view_cell::ViewCell,
     },
     mesh::generate::Pcg32,
 };

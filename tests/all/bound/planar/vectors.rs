@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use lodmark::bound::planar::{
-    Aperture, Projection, SegmentCell, segment_error, segment_extent, tangents, viewpoint_extent,
+    Aperture, Projection, ViewerSegment, segment_error, segment_extent, tangents, viewpoint_extent,
 };
 
 fn direction(gamma: f64) -> DVec2 {
@@ -91,7 +91,7 @@ fn a_line_allows_the_checked_extents_from_the_checked_viewpoints() {
             ],
         ),
     ];
-    let line = SegmentCell::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
+    let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
     for ((x, y), gamma, theta, expected) in entries {
         let found = tangents(direction(gamma), aperture(theta));
         for (found, (at, length)) in found.into_iter().zip(expected) {
@@ -121,12 +121,12 @@ fn a_segment_allows_the_checked_extents() {
         ),
         ([0.0, 0.5], (0.0, 4.0), 1.5, 0.05, 1.392_902_804_959_589_7),
     ] {
-        let cell = SegmentCell::on_x_axis(ends[0], ends[1]);
+        let cell = ViewerSegment::on_x_axis(ends[0], ends[1]);
         let found = segment_extent(&cell, DVec2::new(x, y), direction(gamma), aperture(theta));
         close(found.length, expected, "extent");
         let turn = DVec2::from_angle(0.7);
         let placed = |p: DVec2| turn.rotate(p) + DVec2::new(3.0, -8.0);
-        let cell = SegmentCell::between(
+        let cell = ViewerSegment::between(
             placed(DVec2::new(ends[1], 0.0)),
             placed(DVec2::new(ends[0], 0.0)),
         )
@@ -149,7 +149,7 @@ fn a_segment_sees_the_checked_errors() {
         ([0.0, 5.0], (-1.0, 1.0), (1.0, 1.0), 1.570_796_326_794_896_6),
         ([3.0, 4.0], (0.0, 1.0), (1.0, 0.5), 0.080_961_470_720_839_58),
     ] {
-        let cell = SegmentCell::on_x_axis(ends[0], ends[1]);
+        let cell = ViewerSegment::on_x_axis(ends[0], ends[1]);
         for mirror in [1.0, -1.0] {
             let (m, s) = (DVec2::new(m.0, mirror * m.1), DVec2::new(s.0, mirror * s.1));
             close(segment_error(&cell, m, s).angle, expected, "error");
@@ -280,7 +280,7 @@ fn a_face_has_the_checked_intervals() {
         ),
     ];
     for (ends, m, n, gamma, theta, expected) in entries {
-        let cell = SegmentCell::on_x_axis(ends[0], ends[1]);
+        let cell = ViewerSegment::on_x_axis(ends[0], ends[1]);
         let projection = Projection::new(&cell, direction(gamma), aperture(theta));
         let (m, n) = (DVec2::from(m), DVec2::from(n));
         for (a, b) in [(m, n), (n, m)] {

@@ -6,9 +6,9 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         correspondence::Correspondence,
         verify::{AngleReport, Property, Record, angles},
+        view_cell::ViewCell,
     },
     mesh::{Mesh, canonical, generate},
     num::Precision,

@@ -6,8 +6,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        cell::ViewCell,
         verify::{Gap, Record, angles},
+        view_cell::ViewCell,
     },
     mesh::{canonical, generate},
 };

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use lodmark::bound::{
-    cell::{ViewCell, file},
     point::{Aperture, extent},
+    view_cell::{ViewCell, file},
 };
 use proptest::prelude::*;
 

@@ -39,7 +39,7 @@ fn the_command_writes_what_cannot_be_read_back() {
     let path = |name: &str| folder.path().join(name);
     let mesh = blocks(6);
     io::write(&path("city.obj"), &mesh).expect("written");
-    let cell = lodmark::bound::cell::file::to_json(&before_the_city()).expect("JSON");
+    let cell = lodmark::bound::view_cell::file::to_json(&before_the_city()).expect("JSON");
     std::fs::write(path("cell.json"), cell).expect("written");
     let run = |arguments: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_lodmark"))

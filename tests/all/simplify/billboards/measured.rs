@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 use lodmark::{
-    bound::cell::ViewCell,
+    bound::view_cell::ViewCell,
     mesh::{
         Mesh,
         generate::{self, Pcg32},

@@ -15,11 +15,11 @@ struct Side {
 
 /// A bounded convex polyhedron: an intersection of half-spaces, with its corners.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cell {
+pub struct Polyhedron {
     sides: Vec<Side>,
 }
 
-impl Cell {
+impl Polyhedron {
     /// The box between two corners, each coordinate of the second above that of the first.
     #[must_use]
     pub fn cuboid(low: DVec3, high: DVec3) -> Self {

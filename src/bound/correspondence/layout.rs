@@ -11,7 +11,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::star::Star;
+use super::sectors::Star;
 use crate::num::math::unit;
 
 /// A face of the mesh that changes.

@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::{fan::Part, outline::Corner, sides::Side};
+use super::{layout::Part, outline::Corner, sides::Side};
 use crate::num::{fixed::Weights31, math::sqrt};
 
 /// Corners no farther than this from a spoke lie on it: a few roundings of weights, in a plane where fans have a size

@@ -1,7 +1,9 @@
 //! The JSON cell file: one view cell.
 //!
+//! A file of every kind; copy a line, put your numbers in, and give its name to `--cell`:
+//!
 //! ```json
-//! {"schema": 1, "cell": {"segment": [[-1, 0, 5], [1, 0, 5]]}}
+#![doc = include_str!("examples.jsonl")]
 //! ```
 //! | cell | value |
 //! |---|---|
@@ -27,6 +29,12 @@ use crate::{Error, Result};
 
 /// The version of the schema that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
+
+/// A cell file of every kind, one a line: for help texts and documentation.
+pub const EXAMPLES: &str = include_str!("examples.jsonl");
+
+/// The smallest whole cell file: shown where a file is refused.
+pub const EXAMPLE: &str = r#"{"schema": 1, "cell": {"point": [0, 0, 5]}}"#;
 
 /// Largest cell file that is read, in bytes: 64 corners take some 4 kB.
 const SIZE_LIMIT: u64 = 1 << 20;
@@ -100,14 +108,13 @@ pub fn to_json(cell: &ViewCell) -> Result<String> {
 /// [`Error::Input`]: another schema, missing or unknown fields, or what the constructors of [`ViewCell`] refuse.
 pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewCell> {
     let path = path.as_ref();
-    let refused = |what: String| Error::input(path, what);
+    let refused = |what: String| refused(path, &what);
     // The version first: a later schema fails with its number, not with a field this version does not know.
     #[derive(Deserialize)]
     struct Version {
         schema: u32,
     }
-    let version: Version = serde_json::from_str(text)
-        .map_err(|e| refused(format!("{e}; expected a cell file (JSON)")))?;
+    let version: Version = serde_json::from_str(text).map_err(|e| refused(e.to_string()))?;
     if version.schema != SCHEMA {
         return Err(refused(format!(
             "schema {}; this version reads schema {SCHEMA}",
@@ -130,14 +137,23 @@ pub fn read(path: impl AsRef<Path>) -> Result<ViewCell> {
         .and_then(|file| file.take(SIZE_LIMIT + 1).read_to_end(&mut bytes))
         .map_err(|e| Error::io("read", path, e))?;
     if bytes.len() as u64 > SIZE_LIMIT {
-        return Err(Error::input(
+        return Err(refused(
             path,
-            format!("more than {SIZE_LIMIT} bytes; expected a cell file of at most that"),
+            &format!("more than {SIZE_LIMIT} bytes; expected a cell file of at most that"),
         ));
     }
-    let text = std::str::from_utf8(&bytes)
-        .map_err(|e| Error::input(path, format!("{e}; expected a cell file (JSON)")))?;
+    let text = std::str::from_utf8(&bytes).map_err(|e| refused(path, &e.to_string()))?;
     from_json(text, path)
+}
+
+/// Says what is wrong with a cell file, and shows one that is right.
+fn refused(path: &Path, what: &str) -> Error {
+    Error::input(
+        path,
+        format!(
+            "{what}; a whole cell file is {EXAMPLE}, and `lodmark bound --help` shows one of every kind"
+        ),
+    )
 }
 
 impl CellRecord {
@@ -183,6 +199,65 @@ impl CellRecord {
             Self::HalfSpace { .. } => ViewCell::half_space(a, b),
             Self::Box { .. } => ViewCell::cuboid(a, b),
             _ => ViewCell::segment([a, b]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_is_a_cell_file_and_there_is_one_of_every_kind() {
+        let mut kinds = Vec::new();
+        for line in EXAMPLES.lines().chain([EXAMPLE]) {
+            let cell = from_json(line, "example.json").expect(line);
+            let kind = match cell.shape() {
+                Shape::Point(_) => "point",
+                Shape::Segment(_) => "segment",
+                Shape::Line { .. } => "line",
+                Shape::Polygon { .. } => "polygon",
+                Shape::Plane { .. } => "plane",
+                Shape::Polyhedron { .. } => "polyhedron",
+                Shape::HalfSpace { .. } => "half_space",
+            };
+            kinds.push(if line.contains("\"box\"") {
+                "box"
+            } else {
+                kind
+            });
+        }
+        assert_eq!(
+            kinds,
+            [
+                "point",
+                "segment",
+                "line",
+                "polygon",
+                "plane",
+                "polyhedron",
+                "box",
+                "half_space",
+                "point"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_refused_file_is_told_what_a_cell_file_looks_like() {
+        for text in [
+            "",
+            "[]",
+            "{\"schema\": 1, \"cell\": {\"circle\": 3}}",
+            "{\"schema\": 2}",
+        ] {
+            let told = from_json(text, "cell.json")
+                .expect_err("no cell file")
+                .to_string();
+            assert!(
+                told.contains(EXAMPLE) && told.contains("bound --help"),
+                "{told}"
+            );
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::sight::tangent2;
+use super::viewpoints::tangent2;
 
 /// A sighting in frame units.
 #[derive(Clone, Copy)]

@@ -15,7 +15,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec3;
 
-use super::{meeting::sights_at_meeting, sighting::Seen};
+use super::{angle_tally::Seen, cell_contact::sights_at_meeting};
 
 /// How near an upper bound must come to what is attained: a share of the tangent.
 const NEAR: f64 = 0.002;
@@ -249,7 +249,7 @@ fn halves<T: Copy>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{bound::verify::sight::tangent2, mesh::generate::Pcg32};
+    use crate::{bound::verify::viewpoints::tangent2, mesh::generate::Pcg32};
 
     fn mixed(points: &[DVec3], random: &mut Pcg32) -> (DVec3, Vec<f64>) {
         let weights: Vec<f64> = points.iter().map(|_| random.unit() + 1e-9).collect();

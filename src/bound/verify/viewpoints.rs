@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    bound::cell::{Shape, ViewCell},
+    bound::view_cell::{Shape, ViewCell},
     num::math::{atan2, length},
 };
 

@@ -7,14 +7,14 @@ use crate::{Error, Result};
 /// A segment view cell, in a frame of its own: the cell lies on an axis through `origin`, between two abscissae that
 /// may be infinite. Both sides of the axis are seen from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SegmentCell {
+pub struct ViewerSegment {
     origin: DVec2,
     axis: DVec2,
     pub(super) first: f64,
     pub(super) last: f64,
 }
 
-impl SegmentCell {
+impl ViewerSegment {
     /// The viewpoints from `a` to `b`; one viewpoint where they are equal.
     ///
     /// # Errors

@@ -9,11 +9,11 @@ use rayon::prelude::*;
 
 use super::{
     angle::Check,
-    cover::{self, Gap},
+    angle_bound::{Wanted, first, refine},
+    angle_tally::{Found, Seen},
+    gaps::{self, Gap},
     record::{ONE, Record},
-    sight::tangent2,
-    sighting::{Found, Seen},
-    worst::{Wanted, first, refine},
+    viewpoints::tangent2,
 };
 use crate::{Progress, Result, num::math::length};
 
@@ -62,7 +62,7 @@ impl Check<'_> {
                 .map(|i| {
                     let (mut own, mut wrong, mut bounds) = (Found::default(), None, Vec::new());
                     for t in i * TRIANGLES..count.min((i + 1) * TRIANGLES) {
-                        wrong = wrong.or_else(|| Some((t, cover::check(record, t)?)));
+                        wrong = wrong.or_else(|| Some((t, gaps::check(record, t)?)));
                         self.first_bounds(record, t, &mut own, &mut bounds);
                     }
                     (own, wrong, bounds)
