@@ -9,44 +9,19 @@
 //! [`Unrender`], with the published method in [`BucketEngine`] and the fast one
 //! in [`LayerEngine`].
 
-mod buckets;
-mod clip;
-mod coverage;
-mod deepest;
 mod draw;
-mod face;
-mod lanes;
-mod layer_commit;
-mod layer_view;
-mod layers;
-mod look;
-mod paint;
-mod pictures;
-mod plane;
-mod prepare;
-mod project;
-mod region;
-mod rerender;
-mod samples;
+mod grid;
+mod pixel_rect;
 mod scene;
-mod setup;
-mod shade;
-mod small;
-mod stacks;
 mod unrender;
-mod zbuffer;
 
-pub use draw::{Picture, coverage, depths, ids, keys, luma, rgb};
-pub use face::{Face, Pieces};
-pub use layers::{LayerEngine, LayerScratch};
-pub use paint::Paint;
-pub use plane::Plane;
-pub use project::{Projector, ScreenVertex};
-pub use region::Region;
-pub use rerender::{BucketEngine, BucketScratch};
-pub use samples::{luma_sums, mean_luma, mean_rgb, sum_samples};
+pub use draw::{
+    Face, FaceGeometry, Paint, Picture, Pieces, Projector, ScreenVertex, Setup, Shader, ZBuffer,
+    coverage, depths, ids, keys, luma, luma_sums, mean_luma, mean_rgb, rgb, sum_samples,
+};
+pub use grid::Plane;
+pub use pixel_rect::Region;
 pub use scene::Scene;
-pub use setup::Setup;
-pub use shade::{FaceGeometry, Shader};
-pub use unrender::{Added, Change, Glance, Model, Unrender};
-pub use zbuffer::ZBuffer;
+pub use unrender::{
+    Added, BucketEngine, BucketScratch, Change, Glance, LayerEngine, LayerScratch, Model, Unrender,
+};

@@ -7,11 +7,11 @@
 mod camera;
 pub mod directions;
 pub mod file;
-mod place;
+mod framing;
 mod sets;
 mod sphere;
 
 pub use camera::{Cull, Eye, Interpolation, Light, Matrix, Shading, Specular, View, ViewSet};
-pub use place::Projection;
+pub use framing::Projection;
 pub use sets::{BACKGROUND, SIDE_LIMIT, ViewsName, resolve};
 pub use sphere::{Sphere, frame_of};

@@ -6,12 +6,14 @@
 //! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others look at the layers.
 
 use super::{
+    super::difference,
+    change_set::After,
+    projected::clipped_pixels,
+    view::{Around, LayerView},
+};
+use crate::raster::{
     Face, Paint, Region, ScreenVertex, Setup,
-    lanes::clipped_pixels,
-    layer_view::{Around, LayerView},
-    prepare::After,
-    small::{Covered, Fit, Small},
-    unrender::difference,
+    draw::small_triangle::{Covered, Fit, Small},
 };
 
 /// A fresh triangle, or a piece of one, that won a pixel.

@@ -2,8 +2,13 @@
 
 use glam::DVec3;
 
-use super::{Face, Projector, Region, ScreenVertex, small, small::SmallCorner};
-use crate::num::fixed::SubpixelBits;
+use crate::{
+    num::fixed::SubpixelBits,
+    raster::{
+        Face, Projector, Region, ScreenVertex,
+        draw::small_triangle::{self, SmallCorner},
+    },
+};
 
 /// Columns, rows and depths of one vertex in every view: three runs of `lanes` values.
 ///
@@ -183,7 +188,7 @@ impl Boxes {
             return Some(Region::EMPTY);
         }
         let extent = [x_min, self.y_min[lane], self.x_max[lane], self.y_max[lane]];
-        Some(small::bounds(extent, bits))
+        Some(small_triangle::bounds(extent, bits))
     }
 
     /// The least depth of the vertices in the box of a view.

@@ -8,14 +8,14 @@
 
 use rayon::prelude::*;
 
-use super::{Paint, Pieces, Plane, Projector, Region, Scene, project::ScreenPoint};
+use super::{Paint, Pieces, Plane, Projector, Region, Scene, projector::ScreenPoint};
 use crate::{
     num::fixed::SubpixelBits,
     view::{Cull, View, ViewSet},
 };
 
 /// The key of a sample that nothing covers: behind everything.
-pub(super) const EMPTY: u64 = u64::MAX;
+pub(in crate::raster) const EMPTY: u64 = u64::MAX;
 
 /// Triangles below which a picture is not worth splitting into parts.
 const PART: usize = 32_768;

@@ -6,16 +6,24 @@
 //! seen. Views are dealt out to the parts one by one, those with Gouraud shading after the others: in a set, neighbours
 //! see much the same, and every part should have as much to do for a change as any other.
 
+mod change_set;
+mod commit;
+mod fragment_lists;
+mod hi_z;
+mod probe;
+mod projected;
+mod view;
+
 use rayon::prelude::*;
 
-use super::{
-    Change, Glance, Model, Plane, Unrender,
-    lanes::{Boxes, Lanes},
-    layer_view::{Around, LayerView},
-    look::Look,
-    prepare::Prepared,
+use self::{
+    change_set::Prepared,
+    probe::Look,
+    projected::{Boxes, Lanes},
+    view::{Around, LayerView},
 };
-use crate::view::ViewSet;
+use super::{Change, Glance, Model, Unrender};
+use crate::{raster::Plane, view::ViewSet};
 
 /// Views that a part has bits for.
 const MOST_VIEWS: usize = 64;

@@ -4,7 +4,7 @@
 //! the end outside, so both triangles at an edge find the same one, without any vertex number; the polygon is cut
 //! from its lexicographically smallest corner, so the corner a triangle starts with changes nothing.
 
-use super::project::{ClipVertex, Projector, ScreenVertex};
+use super::projector::{ClipVertex, Projector, ScreenVertex};
 
 /// A corner of a polygon while it is cut: position and the attributes that follow it linearly.
 #[derive(Clone, Copy)]

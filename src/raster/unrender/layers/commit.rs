@@ -1,13 +1,17 @@
 //! How the picture of one view, and its layers, take on a change.
 
 use super::{
-    Face, Projector, ScreenVertex,
-    layer_view::{Around, LayerView},
-    look::Look,
-    small::{Fit, Small, SmallCorner},
-    stacks::TILE,
+    fragment_lists::TILE,
+    probe::Look,
+    view::{Around, LayerView},
 };
-use crate::view::Cull;
+use crate::{
+    raster::{
+        Face, Projector, ScreenVertex,
+        draw::small_triangle::{Fit, Small, SmallCorner},
+    },
+    view::Cull,
+};
 
 impl LayerView {
     /// Makes the change that the look has seen.

@@ -19,17 +19,17 @@ const ROUND: f64 = 4_503_599_627_370_496.0;
 
 /// A corner on the screen: column and row in sub-pixels, and depth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SmallCorner {
-    pub(super) x: i32,
-    pub(super) y: i32,
-    pub(super) depth: u32,
+pub(in crate::raster) struct SmallCorner {
+    pub(in crate::raster) x: i32,
+    pub(in crate::raster) y: i32,
+    pub(in crate::raster) depth: u32,
 }
 
 /// A small triangle ready to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Small {
+pub(in crate::raster) struct Small {
     /// Pixels whose centres the bounding box contains, inside the image.
-    pub(super) bounds: Region,
+    pub(in crate::raster) bounds: Region,
     /// Edge functions at the first pixel of the bounds, with the bias: inside where none is negative.
     edges: [i32; 3],
     step_x: [i32; 3],
@@ -46,7 +46,7 @@ pub(super) struct Small {
 
 /// What [`Small::fit`] made of three corners.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Fit {
+pub(in crate::raster) enum Fit {
     /// It fits.
     Small(Small),
     /// It draws nothing: no area after snapping, culled, or no pixel centre in its bounding box.
@@ -57,14 +57,14 @@ pub(super) enum Fit {
 
 /// Covered pixels: an index and `sum(e_i * depth_above_i)` for each.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Covered {
-    pub(super) at: Vec<u32>,
-    pub(super) above: Vec<i64>,
+pub(in crate::raster) struct Covered {
+    pub(in crate::raster) at: Vec<u32>,
+    pub(in crate::raster) above: Vec<i64>,
 }
 
 impl Small {
     #[inline]
-    pub(super) fn fit(
+    pub(in crate::raster) fn fit(
         [a, mut b, mut c]: [SmallCorner; 3],
         bits: SubpixelBits,
         cull: Cull,
@@ -125,13 +125,18 @@ impl Small {
 
     /// The least depth of its corners.
     #[inline]
-    pub(super) fn nearest(&self) -> u32 {
+    pub(in crate::raster) fn nearest(&self) -> u32 {
         self.depth_min
     }
 
     /// Lists the covered pixels; `index` of pixel (x, y) is `(y - origin.1 << shift) + x - origin.0`.
     #[inline]
-    pub(super) fn list(&self, origin: (i32, i32), shift: u32, covered: &mut Covered) -> usize {
+    pub(in crate::raster) fn list(
+        &self,
+        origin: (i32, i32),
+        shift: u32,
+        covered: &mut Covered,
+    ) -> usize {
         let bounds = self.bounds;
         let (width, height) = (bounds.width(), bounds.height());
         let most = width * height;
@@ -213,7 +218,7 @@ impl Small {
     ///
     /// The product with the reciprocal is off by less than 2^-18, so its nearest integer is the quotient or one more.
     #[inline]
-    pub(super) fn depth(&self, above: i64) -> u32 {
+    pub(in crate::raster) fn depth(&self, above: i64) -> u32 {
         let nearest = (above as f64 * self.reciprocal + ROUND).to_bits() as u32;
         let rest = above - i64::from(nearest) * self.area;
         self.depth_min
@@ -224,7 +229,10 @@ impl Small {
 
 /// Pixels whose centres lie in `[x_min, y_min, x_max, y_max]`, in sub-pixels.
 #[inline]
-pub(super) fn bounds([x_min, y_min, x_max, y_max]: [i32; 4], bits: SubpixelBits) -> Region {
+pub(in crate::raster) fn bounds(
+    [x_min, y_min, x_max, y_max]: [i32; 4],
+    bits: SubpixelBits,
+) -> Region {
     let half = bits.scale() / 2;
     let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
     let last = |v: i32| (v - half) >> bits.bits();

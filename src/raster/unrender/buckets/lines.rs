@@ -5,7 +5,7 @@
 //! stamps intersect the two unions in linear time. The paper's hash tables are vectors here: what is in a bucket never
 //! depends on their order, and the picture never depends on the order of triangles.
 
-use super::Region;
+use crate::raster::Region;
 
 /// The buckets of one direction.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! From samples to pixels: sums of integers, and their means for eyes.
 
-use super::{Plane, Scene, draw::luma};
+use super::{Plane, Scene, picture::luma};
 use crate::view::{View, ViewSet};
 
 /// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.

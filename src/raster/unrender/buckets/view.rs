@@ -3,14 +3,15 @@
 use glam::DVec3;
 
 use super::{
-    Added, Change, Face, FaceGeometry, Model, Paint, Plane, Projector, Region, ScreenVertex, Setup,
-    Shader,
-    buckets::{Buckets, Stamps},
-    unrender::difference,
-    zbuffer::EMPTY,
+    super::{Added, Change, Model, difference},
+    lines::{Buckets, Stamps},
 };
 use crate::{
     num::fixed::level,
+    raster::{
+        Face, FaceGeometry, Paint, Plane, Projector, Region, ScreenVertex, Setup, Shader,
+        draw::EMPTY,
+    },
     view::{Interpolation, View, ViewSet},
 };
 

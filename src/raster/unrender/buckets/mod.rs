@@ -5,14 +5,18 @@
 //! that meet their bounding box, but for the removed ones, are drawn again; then the added ones. The paper clears and
 //! draws the whole region, with the same result. The oracle for any faster engine.
 
+mod lines;
+mod view;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    Change, FaceGeometry, Glance, Model, Plane, Unrender,
-    pictures::{PartScratch, ViewPictures},
+use self::view::{PartScratch, ViewPictures};
+use super::{Change, Glance, Model, Unrender};
+use crate::{
+    raster::{FaceGeometry, Plane},
+    view::ViewSet,
 };
-use crate::view::ViewSet;
 
 /// Pictures of a mesh in all views, un-rendered with row and column buckets.
 #[derive(Clone, Debug)]

@@ -3,6 +3,12 @@
 //! "Un-rendering" takes triangles out of pictures that already exist and puts others in. The engines differ in how
 //! they find what the removed triangles hid; the pictures are the same, bit for bit, as drawn from scratch.
 
+mod buckets;
+mod layers;
+
+pub use buckets::{BucketEngine, BucketScratch};
+pub use layers::{LayerEngine, LayerScratch};
+
 use glam::DVec3;
 
 use super::{FaceGeometry, Plane, Scene};

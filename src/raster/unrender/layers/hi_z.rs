@@ -1,6 +1,7 @@
 //! How deep a picture is, in small squares: what lies behind all of a square is not seen there.
 
-use super::{Region, stacks::Shown};
+use super::fragment_lists::Shown;
+use crate::raster::Region;
 
 /// Samples in a row and column of a square, as a power of two. Squares of 8 hide a third of the triangles that nobody
 /// sees, those of 4 half of them.
@@ -61,7 +62,7 @@ impl Deepest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::stacks::Stacks;
+    use crate::raster::unrender::layers::fragment_lists::Stacks;
 
     #[test]
     fn only_what_is_behind_every_sample_of_its_squares_is_hidden() {

@@ -3,15 +3,15 @@
 use glam::DVec3;
 
 use super::{
-    Change, Face, FaceGeometry, Model, Paint, Projector, Region, ScreenVertex, Shader,
-    deepest::Deepest,
-    lanes::{Boxes, Lanes},
-    prepare::{After, Corner, Fate, Prepared},
-    stacks::{Stacks, TILE},
-    zbuffer::EMPTY,
+    super::{Change, Model},
+    change_set::{After, Corner, Fate, Prepared},
+    fragment_lists::{Stacks, TILE},
+    hi_z::Deepest,
+    projected::{Boxes, Lanes},
 };
 use crate::{
     num::fixed::level,
+    raster::{Face, FaceGeometry, Paint, Projector, Region, ScreenVertex, Shader, draw::EMPTY},
     view::{Interpolation, View, ViewSet},
 };
 

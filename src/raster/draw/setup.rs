@@ -3,7 +3,7 @@
 //! With y downwards and a positive area, `e = dx (py - uy) - dy (px - ux)` is positive inside. Of the points with
 //! `e = 0` those on top and left edges belong to the triangle, so a shared edge is covered exactly once.
 
-use super::{Region, project::ScreenVertex};
+use super::{Region, projector::ScreenVertex};
 use crate::{num::fixed::SubpixelBits, view::Cull};
 
 /// `e(x, y) = dx * x + dy * y + c` at the centre of pixel (x, y), in sub-pixels squared; inside where `e >= bias`.

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Added, Change, FaceGeometry, Model};
+use super::super::{Added, Change, Model};
+use crate::raster::FaceGeometry;
 
 /// No vertex, or no entry.
 const NONE: u32 = u32::MAX;
