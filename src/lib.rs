@@ -25,8 +25,8 @@
 //! - A pixel is the minimum of `(depth, triangle id)`. Ids are stable: a collapse removes ids and never reuses or
 //!   renumbers them, a survivor keeps its id, and a candidate is evaluated under the ids it would have.
 //! - Before the snap there is `f64` with `+ - * / sqrt` in one written order, and `libm` where a transcendental function
-//!   is unavoidable ([`num::math`]).
-//! - Work happens in a frame scaled by a power of two ([`num::Frame`]), undone exactly on output.
+//!   is unavoidable (`num::math`).
+//! - Work happens in a frame scaled by a power of two (`num::Frame`), undone exactly on output.
 //! - A new position is rounded to the file's precision before its cost is evaluated: the pictures that drove a choice
 //!   are those of the file that is written.
 //! - Queues have a total order: image cost, geometric cost, squared edge length, ids.
@@ -48,42 +48,96 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | [`num`] | where a float becomes fixed point, the only callers of sqrt and libm, the scaled frame |
-//! | [`mesh`] | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
-//! | [`io`] | OBJ, PLY and STL, in and out; hostile input ends here |
-//! | [`view`] | cameras, the minimum bounding sphere, view sets and view files |
-//! | [`raster`] | clip, snap, spans, depth, ids, shading; un-rendering |
-//! | [`metric`] | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
-//! | [`visibility`] | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts; the proof of ID buffers by ray casting |
-//! | [`bound`] | what is guaranteed: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
-//! | [`collapse`] | one engine for every method: live mesh, queue, legality, wedges, history and replay |
-//! | [`simplify`] | the methods, their options and outcomes |
-//! | [`output`] | PNG, npy, JSON, contact sheets, goldens |
+//! | `num` | where a float becomes fixed point, the only callers of sqrt and libm, the scaled frame |
+//! | `mesh` | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
+//! | `io` | OBJ, PLY and STL, in and out; hostile input ends here |
+//! | `view` | cameras, the minimum bounding sphere, view sets and view files |
+//! | `raster` | clip, snap, spans, depth, ids, shading; un-rendering |
+//! | `metric` | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
+//! | `visibility` | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts; the proof of ID buffers by ray casting |
+//! | `bound` | what is guaranteed: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
+//! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay |
+//! | `simplify` | the methods, their options and outcomes |
+//! | `output` | PNG, npy, JSON, contact sheets, goldens |
 //!
-//! Two seams carry later work: a [`collapse::Method`] proposes a position and a key for a site and hears of commits;
-//! [`raster::Unrender`] engines take a change, not a collapse.
+//! Two seams carry later work: a `collapse::Method` proposes a position and a key for a site and hears of commits;
+//! `raster::Unrender` engines take a change, not a collapse.
 //!
 //! # Refusals
 //!
 //! No GPU and no window, no system fonts, no wall clock or thread count in results, no tolerance in goldens, no
 //! hash-map order, no global state, no network.
 
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(
+        dead_code,
+        unreachable_pub,
+        unused_imports,
+        reason = "rooms are public to the tests and benches of this crate only, which use more of them"
+    )
+)]
+
 mod error;
 mod progress;
 
+#[cfg(feature = "internals")]
 pub mod bound;
-#[cfg(feature = "cli")]
+#[cfg(not(feature = "internals"))]
+mod bound;
+#[cfg(all(feature = "cli", feature = "internals"))]
 pub mod cli;
+#[cfg(all(feature = "cli", not(feature = "internals")))]
+mod cli;
+#[cfg(feature = "internals")]
 pub mod collapse;
+#[cfg(not(feature = "internals"))]
+mod collapse;
+#[cfg(feature = "internals")]
 pub mod io;
+#[cfg(not(feature = "internals"))]
+mod io;
+#[cfg(feature = "internals")]
 pub mod mesh;
+#[cfg(not(feature = "internals"))]
+mod mesh;
+#[cfg(feature = "internals")]
 pub mod metric;
+#[cfg(not(feature = "internals"))]
+mod metric;
+#[cfg(feature = "internals")]
 pub mod num;
+#[cfg(not(feature = "internals"))]
+mod num;
+#[cfg(feature = "internals")]
 pub mod output;
+#[cfg(not(feature = "internals"))]
+mod output;
+#[cfg(feature = "internals")]
 pub mod raster;
+#[cfg(not(feature = "internals"))]
+mod raster;
+#[cfg(feature = "internals")]
 pub mod simplify;
+#[cfg(not(feature = "internals"))]
+mod simplify;
+#[cfg(feature = "internals")]
 pub mod view;
+#[cfg(not(feature = "internals"))]
+mod view;
+#[cfg(feature = "internals")]
 pub mod visibility;
+#[cfg(not(feature = "internals"))]
+mod visibility;
 
 pub use error::{Error, Result};
+pub use mesh::Mesh;
 pub use progress::{Progress, Silent};
+
+/// The whole command: reads the arguments of the process and runs them.
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+#[must_use]
+pub fn command() -> std::process::ExitCode {
+    cli::main()
+}
