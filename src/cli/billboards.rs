@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{planar::Aperture, view_cell},
@@ -14,7 +14,7 @@ use crate::{
 
 /// Replace a scene by textured quads that viewers in a cell cannot tell from it (Eisemann & Décoret 2007)
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct BillboardsArgs {
     /// The scene: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -52,7 +52,7 @@ enum UpName {
     Z,
 }
 
-impl Options {
+impl BillboardsArgs {
     fn resolved(&self) -> Result<billboards::Options> {
         let limit = match (self.error_deg, self.error_abs) {
             (Some(degrees), _) => Limit::Angle(Aperture::degrees(degrees)?),
@@ -77,11 +77,15 @@ impl Options {
     }
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(
+    options: &BillboardsArgs,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<Verdict> {
     let wanted = options.resolved()?;
     let cell = view_cell::file::read(&options.cell)?;
-    let mesh = source::read(&options.input, true, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+    let mesh = input::read(&options.input, true, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let cloud = billboards::billboards(&mesh, &cell, &wanted, terminal)?;
     let path = output::billboards::write(&options.folder, &cloud, &mesh, terminal)?;
     let horizontal = cloud.quads.iter().filter(|q| q.horizontal).count();

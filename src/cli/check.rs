@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{Result, mesh::Findings};
 
 /// Report what is wrong with a mesh; exit code 1 when something is
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct CheckArgs {
     /// The mesh: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -16,8 +16,8 @@ pub(super) struct Options {
     no_weld: bool,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
+pub(super) fn run(options: &CheckArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
     let findings = Findings::of(&mesh);
     answer!("{}", findings.report().trim_end());
     report(

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
     num::fixed::SubpixelBits,
@@ -15,7 +15,7 @@ use crate::{
 /// Cast a ray through every pixel centre and hold the rasterizer's ID buffer against what it hits; exit code 1 when a
 /// difference is not explained, or when more are than rounding should make
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct CheckRaysArgs {
     /// The mesh: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -39,7 +39,7 @@ pub(super) struct Options {
     picture: Option<PathBuf>,
 }
 
-impl Options {
+impl CheckRaysArgs {
     fn set(&self, sphere: &Sphere) -> Result<ViewSet> {
         let projection = if self.orthographic {
             Projection::Orthographic
@@ -69,15 +69,19 @@ impl Options {
     }
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(
+    options: &CheckRaysArgs,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<Verdict> {
     if options.cap.is_some_and(|cap| !(0.0..=1.0).contains(&cap)) {
         return Err(Error::Usage(
             "--cap is a share of all pixels; expected 0 to 1".into(),
         ));
     }
-    source::require_outputs(options.picture.iter().chain(&common.json))?;
-    let mesh = source::read(&options.input, true, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+    input::require_outputs(options.picture.iter().chain(&common.json))?;
+    let mesh = input::read(&options.input, true, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let frame = frame_of(&mesh);
     let sphere = Sphere::of_mesh(&mesh)
         .ok_or_else(|| Error::Internal("a mesh with triangles has a bounding sphere".into()))?;

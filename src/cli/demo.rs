@@ -20,7 +20,7 @@ use crate::{
 
 /// Simplify built-in scenes with every method and draw what became of them
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct DemoArgs {
     /// Folder for meshes, pictures and the report; made if missing
     #[arg(value_name = "DIR", default_value = "demo-out")]
     folder: PathBuf,
@@ -54,7 +54,7 @@ struct Judged {
     content_sha256: String,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &DemoArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let folder = &options.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
     let mut found = Vec::new();

@@ -10,7 +10,7 @@ use crate::{
 
 /// Hold what this version computes against the recorded values, or record them
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct GoldenArgs {
     #[command(subcommand)]
     verb: Verb,
 }
@@ -38,7 +38,7 @@ struct Place {
     dir: PathBuf,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &GoldenArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let items = Group::all(terminal)?;
     match &options.verb {
         Verb::Check { place, out } => {

@@ -12,7 +12,7 @@ use crate::{
 
 /// Say what a mesh file holds
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct InspectArgs {
     /// The mesh: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -27,7 +27,7 @@ struct Contents {
     content_sha256: String,
 }
 
-pub(super) fn run(options: &Options, common: &Common, _: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &InspectArgs, common: &Common, _: &Terminal) -> Result<Verdict> {
     let loaded = io::read(&options.input)?;
     let contents = Contents {
         summary: Summary::of(&loaded),

@@ -2,33 +2,33 @@
 //!
 //! Results go to stdout, talk to stderr. Exit codes: see [`Error::exit_code`]; 1 is a negative verdict.
 
-/// A line of the result, on stdout. A command goes on where that fails, and [`answers::outcome`] tells in the end.
+/// A line of the result, on stdout. A command goes on where that fails, and [`stdout::outcome`] tells in the end.
 macro_rules! answer {
-    ($($part:tt)*) => { $crate::cli::answers::line(format_args!($($part)*)) };
+    ($($part:tt)*) => { $crate::cli::stdout::line(format_args!($($part)*)) };
 }
 
-mod account;
-mod answers;
 mod billboards;
 mod bound;
+mod bound_region;
 mod check;
 mod check_rays;
 mod compare;
 mod demo;
 mod golden;
-mod guidance;
+mod guidance_args;
+mod input;
+
 mod inspect;
 mod levels;
 mod render;
 mod replay;
 mod selfcheck;
 mod simplify;
-mod source;
+mod stdout;
+mod table;
 mod terminal;
 mod verify;
-mod view_bound;
 mod visibility;
-mod within_distance;
 
 use std::{
     io::Write,
@@ -74,23 +74,23 @@ struct Common {
 /// One verb each.
 #[derive(Debug, Subcommand)]
 enum Command {
-    Simplify(simplify::Options),
-    Replay(replay::Options),
-    Render(render::Options),
-    Compare(compare::Options),
-    Visibility(visibility::Options),
-    MergeVisibility(visibility::MergeOptions),
-    Bound(bound::Options),
-    BoundRegion(bound::RegionOptions),
-    Verify(verify::Options),
-    Check(check::Options),
-    CheckRays(check_rays::Options),
-    Inspect(inspect::Options),
-    Levels(levels::Options),
-    Billboards(billboards::Options),
-    Golden(golden::Options),
-    Selfcheck(selfcheck::Options),
-    Demo(demo::Options),
+    Simplify(simplify::SimplifyArgs),
+    Replay(replay::ReplayArgs),
+    Render(render::RenderArgs),
+    Compare(compare::CompareArgs),
+    Visibility(visibility::VisibilityArgs),
+    MergeVisibility(visibility::MergeArgs),
+    Bound(bound::BoundArgs),
+    BoundRegion(bound_region::BoundRegionArgs),
+    Verify(verify::VerifyArgs),
+    Check(check::CheckArgs),
+    CheckRays(check_rays::CheckRaysArgs),
+    Inspect(inspect::InspectArgs),
+    Levels(levels::LevelsArgs),
+    Billboards(billboards::BillboardsArgs),
+    Golden(golden::GoldenArgs),
+    Selfcheck(selfcheck::SelfcheckArgs),
+    Demo(demo::DemoArgs),
     /// Verbs of the plan that this version does not have yet.
     #[command(external_subcommand)]
     Other(Vec<String>),
@@ -156,7 +156,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
         Command::Visibility(options) => visibility::run(&options, common, &terminal),
         Command::MergeVisibility(options) => visibility::run_merge(&options, common, &terminal),
         Command::Bound(options) => bound::run(&options, common, &terminal),
-        Command::BoundRegion(options) => bound::run_region(&options, common, &terminal),
+        Command::BoundRegion(options) => bound_region::run(&options, common, &terminal),
         Command::Verify(options) => verify::run(&options, common, &terminal),
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
@@ -181,7 +181,7 @@ fn run(arguments: Arguments) -> Result<Verdict> {
     };
     terminal.finish();
     let verdict = verdict?;
-    answers::outcome()?;
+    stdout::outcome()?;
     Ok(verdict)
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result, io,
     output::{hash, npy, png},
@@ -17,7 +17,7 @@ use crate::{
 
 /// Draw reference images of a mesh, with the views as a file that others can draw from
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct RenderArgs {
     /// The mesh: .obj, .ply or .stl; ids are 1 + the number of the triangle in the file
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -77,7 +77,7 @@ enum CullName {
     Front,
 }
 
-impl Options {
+impl RenderArgs {
     fn set(&self, sphere: &Sphere) -> Result<ViewSet> {
         let projection = if self.orthographic {
             Projection::Orthographic
@@ -125,9 +125,9 @@ impl Options {
     }
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    let mesh = source::read(&options.input, true, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+pub(super) fn run(options: &RenderArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let mesh = input::read(&options.input, true, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let frame = frame_of(&mesh);
     let sphere = Sphere::of_mesh(&mesh)
         .ok_or_else(|| Error::Internal("a mesh with triangles has a bounding sphere".into()))?;

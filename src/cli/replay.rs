@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     collapse::{History, Replay},
@@ -14,7 +14,7 @@ use crate::{
 ///
 /// Polishing follows the last collapse and belongs to the last level only.
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {
+pub(super) struct ReplayArgs {
     /// The mesh that was simplified
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -25,16 +25,16 @@ pub(super) struct Options {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// The level: at most this many triangles
-    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = source::parse_triangles::<u32>)]
+    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = input::parse_triangles::<u32>)]
     triangles: u32,
     /// Exit with code 6, writing nothing, where the run did not get that far
     #[arg(long)]
     strict: bool,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     io::writable_format(&options.output)?;
-    source::require_outputs(
+    input::require_outputs(
         [Some(&options.output), common.json.as_ref()]
             .into_iter()
             .flatten(),
@@ -43,7 +43,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     let history = History::from_bytes(&bytes, &options.history)?;
     // A recorded run welded its input or not; the hash of the content tells which.
     let mesh = [true, false].into_iter().find_map(|weld| {
-        let mesh = source::read(&options.input, weld, terminal).map(|m| mesh::canonical(&m).mesh);
+        let mesh = input::read(&options.input, weld, terminal).map(|m| mesh::canonical(&m).mesh);
         match mesh {
             Ok(m) if weld && mesh::content_digest(&m) != history.header().input => None,
             other => Some(other),

@@ -8,7 +8,7 @@ use crate::{
 
 /// Compute the goldens that this program was built with, without any files; exit code 1 where a bit differs
 #[derive(Debug, clap::Args)]
-pub(super) struct Options {}
+pub(super) struct SelfcheckArgs {}
 
 /// What the program runs on: none of it may change a result.
 #[derive(Debug, serde::Serialize)]
@@ -50,7 +50,7 @@ impl Machine {
     }
 }
 
-pub(super) fn run(_: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(_: &SelfcheckArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let machine = Machine::here();
     answer!(
         "lodmark {} on {}-{}, {} threads, {} build, instruction sets: {}",

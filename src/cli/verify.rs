@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ArgGroup;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
@@ -28,7 +28,7 @@ An angle is checked for the viewers in a cell with the file that `simplify --bou
 original triangle without a gap, and that no point and what stands for it are seen under more than the angle, at samples \
 and by proof. Without that file only a weaker property is checked: that every original point has some point of LOW within \
 the angle.")]
-pub(super) struct Options {
+pub(super) struct VerifyArgs {
     /// The original mesh: .obj, .ply or .stl
     #[arg(value_name = "REF")]
     reference: PathBuf,
@@ -63,12 +63,12 @@ pub(super) struct Options {
     samples: u64,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    source::require_outputs(common.json.iter())?;
-    let reference = source::read(&options.reference, false, terminal)?;
-    source::require_triangles(&options.reference, &reference)?;
-    let low = source::read(&options.low, false, terminal)?;
-    source::require_triangles(&options.low, &low)?;
+pub(super) fn run(options: &VerifyArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    input::require_outputs(common.json.iter())?;
+    let reference = input::read(&options.reference, false, terminal)?;
+    input::require_triangles(&options.reference, &reference)?;
+    let low = input::read(&options.low, false, terminal)?;
+    input::require_triangles(&options.low, &low)?;
     let holds = match (options.error, options.error_abs, options.error_deg) {
         (Some(share), ..) => distances(
             options,
@@ -99,7 +99,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
 }
 
 fn distances(
-    options: &Options,
+    options: &VerifyArgs,
     reference: &Mesh,
     low: &Mesh,
     claim: Claim,
@@ -128,7 +128,7 @@ fn distances(
 }
 
 fn angles(
-    options: &Options,
+    options: &VerifyArgs,
     reference: &Mesh,
     low: &Mesh,
     degrees: f64,

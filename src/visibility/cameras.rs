@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Alignment, CameraWeights, Options};
+use super::{Alignment, CameraWeights, MeasureOptions};
 use crate::{
     Error, Result,
     num::math,
@@ -34,7 +34,7 @@ pub(super) struct Cameras {
 }
 
 impl Cameras {
-    pub(super) fn new(options: &Options, sphere: &Sphere) -> Result<Self> {
+    pub(super) fn new(options: &MeasureOptions, sphere: &Sphere) -> Result<Self> {
         options.check()?;
         let mut towards = octahedron(options.octahedron);
         if options.alignment == Alignment::Generic {

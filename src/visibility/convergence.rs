@@ -1,6 +1,6 @@
 //! How fast the measure converges with the number of cameras: Figure 3 of Zhang & Turk 2002.
 
-use super::{Options, Visibility, measure};
+use super::{MeasureOptions, Visibility, measure};
 use crate::{
     Progress, Result,
     mesh::Mesh,
@@ -27,11 +27,11 @@ pub struct ConvergenceStep {
 /// As [`measure`].
 pub fn convergence(
     mesh: &Mesh,
-    options: &Options,
+    options: &MeasureOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<ConvergenceStep>> {
     let with = |octahedron: u32| {
-        let options = Options {
+        let options = MeasureOptions {
             octahedron,
             ..*options
         };

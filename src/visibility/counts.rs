@@ -17,9 +17,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    Options,
+    MeasureOptions,
     cameras::Cameras,
-    sight::{FULL, Sight},
+    seen_parts::{FULL, SeenParts},
     subdivide::Pieces,
 };
 use crate::{
@@ -64,7 +64,7 @@ const PIXELS_AT_ONCE: usize = 3 << 24;
 /// in the order of the views.
 pub(super) fn count(
     mesh: &Mesh,
-    options: &Options,
+    options: &MeasureOptions,
     range: Range<u32>,
     progress: &dyn Progress,
     mut watch: impl FnMut(&[u16]),
@@ -106,7 +106,7 @@ pub(super) fn count(
     let views: Vec<u32> = range.collect();
     let batch = (BATCH_PARTS / faces).clamp(1, BATCH_VIEWS).min(views.len());
     let mut parts = vec![0_u16; batch * faces];
-    let idle: Mutex<Vec<Sight>> = Mutex::new(Vec::new());
+    let idle: Mutex<Vec<SeenParts>> = Mutex::new(Vec::new());
     let done = AtomicU64::new(0);
     let pictures = (PIXELS_AT_ONCE / (options.size as usize).pow(2)).max(1);
     for views_of_batch in views.chunks(batch) {
@@ -119,7 +119,7 @@ pub(super) fn count(
                 let total = views.len() as u64;
                 progress.step("visibility", done.fetch_add(1, Ordering::Relaxed), total)?;
                 let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-                let mut sight = lock().pop().unwrap_or_else(Sight::new);
+                let mut sight = lock().pop().unwrap_or_else(SeenParts::new);
                 let camera = (&cameras, view as usize);
                 sight.look(&pieces, camera, options, parts);
                 lock().push(sight);

@@ -1,7 +1,7 @@
 //! V(t) and V(M): equations 4.3 and 3.2 of Zhang & Turk 2002.
 
 use super::{
-    Options,
+    MeasureOptions,
     counts::{Counts, Weights, count},
 };
 use crate::{Error, Progress, Result, mesh::Mesh, num::math, view::frame_of};
@@ -14,7 +14,7 @@ pub struct Visibility {
     mesh: f64,
     never_seen_area: f64,
     never_seen: usize,
-    options: Options,
+    options: MeasureOptions,
 }
 
 /// Measures `mesh` from all cameras that `options` ask for.
@@ -24,7 +24,11 @@ pub struct Visibility {
 /// # Errors
 /// [`Error::Usage`] where an option is out of range or the mesh has no triangle, [`Error::Unsupported`] where its
 /// triangles would make too many pieces, [`Error::Interrupted`].
-pub fn measure(mesh: &Mesh, options: &Options, progress: &dyn Progress) -> Result<Visibility> {
+pub fn measure(
+    mesh: &Mesh,
+    options: &MeasureOptions,
+    progress: &dyn Progress,
+) -> Result<Visibility> {
     let counts = count(mesh, options, 0..options.cameras(), progress, |_| {})?;
     Visibility::of(mesh, options, counts)
 }
@@ -63,12 +67,12 @@ impl Visibility {
 
     /// What it was measured with.
     #[must_use]
-    pub fn options(&self) -> &Options {
+    pub fn options(&self) -> &MeasureOptions {
         &self.options
     }
 
     /// From the counts of all views.
-    pub(super) fn of(mesh: &Mesh, options: &Options, counts: Counts) -> Result<Self> {
+    pub(super) fn of(mesh: &Mesh, options: &MeasureOptions, counts: Counts) -> Result<Self> {
         let faces = mesh.triangles().len();
         if counts.views.len() != faces || counts.front.len() != faces {
             return Err(Error::Internal("counts of another mesh".into()));

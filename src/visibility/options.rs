@@ -48,7 +48,7 @@ pub enum UnseenRule {
 /// A visibility measurement. Resolved: equal options on equal meshes give equal bits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct Options {
+pub struct MeasureOptions {
     /// How often the octahedron of cameras is subdivided, 0 to 5: 4^(k+1) + 2 cameras.
     pub octahedron: u32,
     /// Width and height of the ID buffers in pixels; the bounding sphere of the mesh touches all four sides.
@@ -70,7 +70,7 @@ pub struct Options {
     pub edge_limit: Option<f64>,
 }
 
-impl Default for Options {
+impl Default for MeasureOptions {
     fn default() -> Self {
         Self {
             octahedron: 3,
@@ -93,7 +93,7 @@ const DEFAULT_EDGE_LIMIT: f64 = 8.9;
 /// The same for a triangle half as high as its longest edge, with the cosine rounded to the paper's 0.25.
 const PAPER_EDGE_LIMIT: f64 = 16.0;
 
-impl Options {
+impl MeasureOptions {
     /// The published method to the letter: cameras on the axes that all count alike, and the depths of neighbouring
     /// pixels for triangles that no pixel shows.
     ///

@@ -1,14 +1,14 @@
 //! `lodmark bound`: how far a simplification is from its original for every viewer in a view cell, as a guarantee.
 
 mod pictures;
-mod region;
-mod switch;
+
+mod switch_args;
 
 use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::{Common, Verdict, report, source, terminal::Terminal};
+use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
@@ -23,8 +23,6 @@ use crate::{
     simplify::{NearestTriangle, originals},
     view::frame_of,
 };
-
-pub(super) use region::{Options as RegionOptions, run as run_region};
 
 /// Guarantee how far a simplified mesh is from its original for every viewer in a view cell
 #[derive(Debug, clap::Args)]
@@ -43,7 +41,7 @@ direction}, polygon: [A, B, C, ...], plane: {point, normal}, polyhedron: [A, B, 
 The report has bound_deg (the guarantee), attained_deg (what is seen of a point: the guarantee is no larger by more than \
 --precision unless the parts ran out or the cell meets the mesh), worst (that point, its replacement, its triangle and \
 the viewpoint), pieces; with --heuristics: vertices_deg, edges_deg; with --switch-*: distance_bound, switch_distance.")]
-pub(super) struct Options {
+pub(super) struct BoundArgs {
     /// The original: .obj, .ply or .stl
     #[arg(value_name = "REF")]
     reference: PathBuf,
@@ -74,7 +72,7 @@ pub(super) struct Options {
     #[arg(long, requires = "cell")]
     heuristics: bool,
     #[command(flatten)]
-    switch: switch::Switch,
+    switch: switch_args::SwitchArgs,
 }
 
 /// The guarantee in degrees and file units.
@@ -105,12 +103,12 @@ struct WorstPoint {
     triangle: u32,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     options.check()?;
     let aperture = options.switch.aperture()?;
     let cell = options.cell.as_ref().map(file::read).transpose()?;
-    let reference = source::read(&options.reference, true, terminal)?;
-    let low = source::read(&options.low, true, terminal)?;
+    let reference = input::read(&options.reference, true, terminal)?;
+    let low = input::read(&options.low, true, terminal)?;
     for (path, mesh) in [(&options.reference, &reference), (&options.low, &low)] {
         if mesh.positions().is_empty() {
             return Err(Error::input(
@@ -168,7 +166,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         .map(|aperture| {
             let bound = measured(Measure::Distance)?;
             let distance = frame.leave_length(bound.bound, 1);
-            Ok::<_, Error>(switch::Found::new(distance, aperture))
+            Ok::<_, Error>(switch_args::Found::new(distance, aperture))
         })
         .transpose()?;
     report(
@@ -199,10 +197,10 @@ struct Sections<'a> {
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     found: Option<&'a Found>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    switch: Option<&'a switch::Found>,
+    switch: Option<&'a switch_args::Found>,
 }
 
-impl Options {
+impl BoundArgs {
     fn check(&self) -> Result<()> {
         if !(0.0001..=1.0).contains(&self.precision) {
             return Err(Error::Usage(format!(

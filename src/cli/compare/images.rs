@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Found, Options, has_extension, table, verdict};
+use super::{CompareArgs, Found, has_extension, verdict};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, report, terminal::Terminal},
+    cli::{Common, Verdict, report, table, terminal::Terminal},
     metric::{
         difference::{Comparison, compare},
         luma::{SquaredError, squared_error},
@@ -39,7 +39,7 @@ struct Judgement<'a> {
     squared_error: Option<SquaredError>,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     refuse_foreign(options)?;
     let images = options.files().map(read).collect::<Result<Vec<_>>>()?;
     let (expected, candidates) = images
@@ -82,7 +82,7 @@ fn show(judgement: &Judgement<'_>) {
 }
 
 /// An option that would be ignored is an error.
-fn refuse_foreign(options: &Options) -> Result<()> {
+fn refuse_foreign(options: &CompareArgs) -> Result<()> {
     let foreign = [
         ("--views", options.views.is_some()),
         ("--size", options.size.is_some()),
@@ -154,7 +154,7 @@ fn pictures(expected: &Picture, actual: &Picture) -> Result<(Comparison, Option<
 }
 
 fn write_difference(
-    options: &Options,
+    options: &CompareArgs,
     path: &Path,
     expected: &Image,
     candidates: &[Image],

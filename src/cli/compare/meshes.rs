@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Found, Options, figure, table, verdict};
+use super::{CompareArgs, Found, red_differences, verdict};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, report, source, terminal::Terminal},
+    cli::{Common, Verdict, input, report, table, terminal::Terminal},
     mesh::{Edges, Mesh, content_sha256},
     metric::{
         appearance::{Appearance, WorstView, appearance, flat, image_error_views, pictures},
@@ -111,7 +111,7 @@ struct Findings<'a> {
     found: Found<Judgement<'a>>,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let mut sources = Vec::new();
     for path in options.files() {
         sources.push(read(path, terminal)?);
@@ -162,7 +162,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         }
     }
     if let Some(folder) = &options.red_differences {
-        figure::write(
+        red_differences::write(
             options,
             folder,
             &reference_scene,
@@ -189,17 +189,17 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
 }
 
 fn read<'a>(path: &'a Path, terminal: &Terminal) -> Result<Source<'a>> {
-    let mesh = source::read(path, false, terminal)?;
-    source::require_triangles(path, &mesh)?;
+    let mesh = input::read(path, false, terminal)?;
+    input::require_triangles(path, &mesh)?;
     Ok(Source {
         path,
         sha256: content_sha256(&mesh),
-        mesh: source::welded(path, mesh, terminal),
+        mesh: input::welded(path, mesh, terminal),
     })
 }
 
 /// The views, around the reference, in file units.
-fn views(options: &Options, sphere: &Sphere) -> Result<ViewSet> {
+fn views(options: &CompareArgs, sphere: &Sphere) -> Result<ViewSet> {
     let name = match &options.views {
         None => &ViewsName::Rhombicuboctahedron,
         Some(ViewsName::File(path)) if options.size.is_some() || options.samples.is_some() => {
@@ -293,7 +293,7 @@ impl<'a> Judgement<'a> {
     }
 }
 
-fn resolved(options: &Options, set: &ViewSet) -> serde_json::Value {
+fn resolved(options: &CompareArgs, set: &ViewSet) -> serde_json::Value {
     let views = options.views.as_ref();
     serde_json::json!({
         "reference": options.reference,
@@ -314,7 +314,7 @@ fn resolved(options: &Options, set: &ViewSet) -> serde_json::Value {
 
 /// One row for each candidate: expected, actual and difference in its worst view.
 fn write_difference(
-    options: &Options,
+    options: &CompareArgs,
     path: &Path,
     reference: &Scene,
     scenes: &[Scene],
@@ -353,7 +353,7 @@ fn shading_name(worst: WorstView) -> &'static str {
     }
 }
 
-fn show(options: &Options, reference: &Shape<'_>, found: &[Judgement<'_>]) {
+fn show(options: &CompareArgs, reference: &Shape<'_>, found: &[Judgement<'_>]) {
     let head = [
         "mesh",
         "triangles",

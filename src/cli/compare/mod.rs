@@ -3,10 +3,9 @@
 //! Meshes are judged as Lindstrom & Turk 2000, section 5 does: 24 views of 512 x 512 pixels around the reference, with
 //! 2 x 2 samples each, flat and Gouraud. Two images are equal, or it is said where and how much they are not.
 
-mod figure;
 mod images;
 mod meshes;
-pub(super) mod table;
+mod red_differences;
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +24,7 @@ The report has, for every candidate: rms_flat, rms_gouraud, psnr_flat, psnr_gour
 samples), worst, distance_mean, distance_rms, distance_max, views[]; with --image-error also image_error: error (the \
 root of the summed squared differences in levels, equation 5.11 of Zhang & Turk 2002), rms (the same per pixel, \
 comparable between sizes), squared_error, views (20).")]
-pub(super) struct Options {
+pub(super) struct CompareArgs {
     /// The reference: a mesh (.obj, .ply, .stl) or an image (.png; .npy of ids or depths)
     #[arg(value_name = "REF")]
     reference: PathBuf,
@@ -71,7 +70,7 @@ pub(super) struct Options {
     difference_scale: Option<u8>,
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     options.check()?;
     let mut images = options.files().map(is_image);
     let first = images.next() == Some(true);
@@ -88,7 +87,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
     }
 }
 
-impl Options {
+impl CompareArgs {
     /// The reference, then the candidates.
     fn files(&self) -> impl Iterator<Item = &Path> {
         std::iter::once(&self.reference)

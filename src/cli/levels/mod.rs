@@ -13,7 +13,7 @@ use std::{io::Write, path::PathBuf};
 use clap::ValueEnum;
 
 use super::{
-    Common, Verdict, compare::table, guidance::Guidance, report, source, terminal::Terminal,
+    Common, Verdict, guidance_args::GuidanceArgs, input, report, table, terminal::Terminal,
 };
 use crate::{
     Error, Result,
@@ -39,7 +39,7 @@ squared luma differences, flat, from the 20 corners of a dodecahedron; rms is th
 are the larger of both ways, in % of the diagonal of the original's bounding box. `less` says how much less image error \
 a method has than the first one, in %; 0 where neither has any. Its mean leaves out levels that either did not reach. \
 Folds are kept at every level, as by simplify --keep-folds.")]
-pub(super) struct Options {
+pub(super) struct LevelsArgs {
     /// The mesh to simplify: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -74,7 +74,7 @@ pub(super) struct Options {
     #[arg(long)]
     topology_free: bool,
     #[command(flatten)]
-    guidance: Guidance,
+    guidance: GuidanceArgs,
     /// Write every level too, as METHOD-PERCENT.ply
     #[arg(long)]
     meshes: bool,
@@ -109,7 +109,7 @@ fn parse_percent(text: &str) -> Result<f64, String> {
     }
 }
 
-impl Options {
+impl LevelsArgs {
     /// Refuses what makes no sense before anything is read; the levels from fine to coarse.
     fn check(&self) -> Result<Vec<f64>> {
         for (i, method) in self.methods.iter().enumerate() {
@@ -187,18 +187,18 @@ impl Options {
     }
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let percents = options.check()?;
-    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let mesh = canonical(&mesh).mesh;
-    source::require_triangles(&options.input, &mesh)?;
+    input::require_triangles(&options.input, &mesh)?;
     let visibility = options.guidance.read(&mesh)?;
     let count = mesh.triangles().len();
     let folder = &options.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
     let (csv, svg) = (folder.join("levels.csv"), folder.join("levels.svg"));
-    source::require_outputs(
+    input::require_outputs(
         [Some(&csv), Some(&svg), common.json.as_ref()]
             .into_iter()
             .flatten(),

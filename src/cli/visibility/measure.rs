@@ -8,19 +8,19 @@ use std::{
 use super::{chart, merge};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, report, source, terminal::Terminal},
+    cli::{Common, Verdict, input, report, terminal::Terminal},
     io,
     mesh::{self, Mesh},
     output::{npy, visibility_ply},
     visibility::{
-        self, ConvergenceStep, Options as Measurement, Survey, Visibility, VisibilityTable,
+        self, ConvergenceStep, MeasureOptions, PartialVisibility, Visibility, VisibilityTable,
         convergence, remove_hidden,
     },
 };
 
 /// Measure how visible every triangle is from all around (Zhang & Turk 2002)
 #[derive(Debug, clap::Args)]
-pub(in crate::cli) struct Options {
+pub(in crate::cli) struct VisibilityArgs {
     /// The mesh: .obj, .ply or .stl; it is brought into canonical order first
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -116,13 +116,13 @@ fn parse_limit(text: &str) -> Result<EdgeLimit, String> {
 }
 
 impl Choice {
-    fn resolve(&self) -> Result<Measurement> {
+    fn resolve(&self) -> Result<MeasureOptions> {
         let default = if self.paper {
-            Measurement::paper()
+            MeasureOptions::paper()
         } else {
-            Measurement::default()
+            MeasureOptions::default()
         };
-        let resolved = Measurement {
+        let resolved = MeasureOptions {
             octahedron: self.cameras.unwrap_or(default.octahedron),
             size: self.size.unwrap_or(default.size),
             subpixel_bits: match self.subpixel_bits {
@@ -140,7 +140,7 @@ impl Choice {
 }
 
 pub(in crate::cli) fn run(
-    options: &Options,
+    options: &VisibilityArgs,
     common: &Common,
     terminal: &Terminal,
 ) -> Result<Verdict> {
@@ -152,8 +152,8 @@ pub(in crate::cli) fn run(
         Some(survey) => *survey.options(),
         None => options.choice.resolve()?,
     };
-    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let canonical = mesh::canonical(&mesh);
     drop(mesh);
     if canonical.degenerate > 0 {
@@ -164,10 +164,10 @@ pub(in crate::cli) fn run(
         ));
     }
     let mesh = canonical.mesh;
-    source::require_triangles(&options.input, &mesh)?;
+    input::require_triangles(&options.input, &mesh)?;
     let resolved = serde_json::json!({ "input": options.input, "measurement": measurement });
     if let (Some(range), Some(path)) = (&options.view_range, &options.partial) {
-        let part = Survey::of_views(&mesh, &measurement, range.clone(), terminal)?;
+        let part = PartialVisibility::of_views(&mesh, &measurement, range.clone(), terminal)?;
         merge::write(path, &part)?;
         report(common, "visibility", resolved, merge::summary(&part))?;
         merge::tell(path, &part);
@@ -228,10 +228,10 @@ struct Numbers<'a> {
 
 /// Measures, or takes a measurement from its file; keeps the counts and the table where they are asked for.
 fn measured(
-    options: &Options,
+    options: &VisibilityArgs,
     mesh: &Mesh,
-    measurement: &Measurement,
-    survey: Option<Survey>,
+    measurement: &MeasureOptions,
+    survey: Option<PartialVisibility>,
     terminal: &Terminal,
 ) -> Result<(Visibility, Option<VisibilityTable>)> {
     let with_file = survey.is_some() || options.partial.is_some();
@@ -241,12 +241,15 @@ fn measured(
     let (survey, table) = match survey {
         Some(survey) => (survey, None),
         None if options.table.is_some() => {
-            let (survey, table) = Survey::with_table(mesh, measurement, terminal)?;
+            let (survey, table) = PartialVisibility::with_table(mesh, measurement, terminal)?;
             (survey, Some(table))
         }
         None => {
             let all = 0..measurement.cameras();
-            (Survey::of_views(mesh, measurement, all, terminal)?, None)
+            (
+                PartialVisibility::of_views(mesh, measurement, all, terminal)?,
+                None,
+            )
         }
     };
     let found = match &options.from {
@@ -259,7 +262,11 @@ fn measured(
     Ok((found, table))
 }
 
-fn check_outputs(options: &Options, figure: Option<&[PathBuf; 2]>, common: &Common) -> Result<()> {
+fn check_outputs(
+    options: &VisibilityArgs,
+    figure: Option<&[PathBuf; 2]>,
+    common: &Common,
+) -> Result<()> {
     if let Some(path) = &options.out
         && path
             .extension()
@@ -281,7 +288,7 @@ fn check_outputs(options: &Options, figure: Option<&[PathBuf; 2]>, common: &Comm
         &common.json,
     ];
     let figure = figure.into_iter().flatten();
-    source::require_outputs(single.into_iter().flatten().chain(figure))
+    input::require_outputs(single.into_iter().flatten().chain(figure))
 }
 
 /// `path` with an extension, which replaces only another of those of the figure: `bunny-0.5` has none.
@@ -300,7 +307,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     io::atomic::write(path, |file| file.write_all(bytes))
 }
 
-fn tell(numbers: &Numbers<'_>, measurement: &Measurement, steps: &[ConvergenceStep]) {
+fn tell(numbers: &Numbers<'_>, measurement: &MeasureOptions, steps: &[ConvergenceStep]) {
     answer!("V(M)                {:.6}", numbers.v_mesh);
     answer!(
         "never seen          {} of {} triangles, {:.4} % of the area",

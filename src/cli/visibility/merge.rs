@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, report, source, terminal::Terminal},
+    cli::{Common, Verdict, input, report, terminal::Terminal},
     io,
     mesh::Mesh,
-    visibility::{Survey, Visibility},
+    visibility::{PartialVisibility, Visibility},
 };
 
 /// Put partial visibility results together, in any order: the bytes of a run over all their views
 #[derive(Debug, clap::Args)]
-pub(in crate::cli) struct Options {
+pub(in crate::cli) struct MergeArgs {
     /// Files that `visibility --partial` or this command wrote
     #[arg(value_name = "PARTIAL", required = true)]
     partials: Vec<PathBuf>,
@@ -22,13 +22,13 @@ pub(in crate::cli) struct Options {
 }
 
 pub(in crate::cli) fn run(
-    options: &Options,
+    options: &MergeArgs,
     common: &Common,
     terminal: &Terminal,
 ) -> Result<Verdict> {
     let outputs = [Some(&options.out), common.json.as_ref()];
-    source::require_outputs(outputs.into_iter().flatten())?;
-    let mut sum: Option<Survey> = None;
+    input::require_outputs(outputs.into_iter().flatten())?;
+    let mut sum: Option<PartialVisibility> = None;
     for path in &options.partials {
         let part = read(path)?;
         match &mut sum {
@@ -59,12 +59,16 @@ pub(in crate::cli) fn run(
 }
 
 /// Reads a survey.
-pub(super) fn read(path: &Path) -> Result<Survey> {
-    Survey::from_bytes(&io::bytes::read(path)?, path)
+pub(super) fn read(path: &Path) -> Result<PartialVisibility> {
+    PartialVisibility::from_bytes(&io::bytes::read(path)?, path)
 }
 
 /// The visibility that a survey in a file holds, which must be of `mesh` and of all views.
-pub(in crate::cli) fn finish(path: &Path, survey: &Survey, mesh: &Mesh) -> Result<Visibility> {
+pub(in crate::cli) fn finish(
+    path: &Path,
+    survey: &PartialVisibility,
+    mesh: &Mesh,
+) -> Result<Visibility> {
     let named = |message| format!("{}: {message}", path.display());
     survey.finish(mesh).map_err(|error| match error {
         Error::Usage(message) => Error::input(path, message),
@@ -74,13 +78,13 @@ pub(in crate::cli) fn finish(path: &Path, survey: &Survey, mesh: &Mesh) -> Resul
 }
 
 /// Writes a survey; an existing file is replaced as a whole.
-pub(super) fn write(path: &Path, survey: &Survey) -> Result<()> {
+pub(super) fn write(path: &Path, survey: &PartialVisibility) -> Result<()> {
     let bytes = survey.to_bytes();
     io::atomic::write(path, |file| file.write_all(&bytes))
 }
 
 /// What a survey holds, for a report.
-pub(super) fn summary(survey: &Survey) -> serde_json::Value {
+pub(super) fn summary(survey: &PartialVisibility) -> serde_json::Value {
     let views: Vec<[u32; 2]> = survey.views().iter().map(|r| [r.start, r.end]).collect();
     serde_json::json!({
         "views": views,
@@ -91,7 +95,7 @@ pub(super) fn summary(survey: &Survey) -> serde_json::Value {
 }
 
 /// Says what a survey holds.
-pub(super) fn tell(path: &Path, survey: &Survey) {
+pub(super) fn tell(path: &Path, survey: &PartialVisibility) {
     answer!(
         "{}: views {} of {} cameras, {} triangles",
         path.display(),
@@ -101,7 +105,7 @@ pub(super) fn tell(path: &Path, survey: &Survey) {
     );
 }
 
-fn ranges(survey: &Survey) -> String {
+fn ranges(survey: &PartialVisibility) -> String {
     let ranges = survey.views().iter();
     let texts = ranges.map(|r| format!("{}..{}", r.start, r.end));
     texts.collect::<Vec<_>>().join(", ")

@@ -4,5 +4,5 @@ mod chart;
 mod measure;
 mod merge;
 
-pub(super) use measure::{Options, parse_cameras, run};
-pub(super) use merge::{Options as MergeOptions, finish, run as run_merge};
+pub(super) use measure::{VisibilityArgs, parse_cameras, run};
+pub(super) use merge::{MergeArgs, finish, run as run_merge};

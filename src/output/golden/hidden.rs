@@ -25,10 +25,10 @@ fn guided(quadric: QuadricOptions, triangles: u64) -> Options {
     let mut options = Options::visibility(Amount::Triangles(triangles));
     options.method = MethodOptions::Visibility(VisibilityOptions {
         quadric,
-        measure: visibility::Options {
+        measure: visibility::MeasureOptions {
             octahedron: 1,
             size: 64,
-            ..visibility::Options::default()
+            ..visibility::MeasureOptions::default()
         },
         ..VisibilityOptions::default()
     });

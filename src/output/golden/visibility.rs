@@ -8,35 +8,37 @@ use crate::{
     output::{png::Picture, visibility_ply},
     raster::{self, Scene},
     view::{Projection, ViewSet, directions::octahedron, frame_of},
-    visibility::{self, Options, Survey, Visibility, color, measure, remove_hidden},
+    visibility::{
+        self, MeasureOptions, PartialVisibility, Visibility, color, measure, remove_hidden,
+    },
 };
 
 pub(super) fn measured(collector: &mut Collector) -> Result<()> {
-    let small = Options {
+    let small = MeasureOptions {
         octahedron: 1,
         size: 72,
-        ..Options::default()
+        ..MeasureOptions::default()
     };
     let rules = [
         ("default", small),
         (
             "paper",
-            Options {
+            MeasureOptions {
                 octahedron: 1,
                 size: 72,
-                ..Options::paper()
+                ..MeasureOptions::paper()
             },
         ),
         (
             "fractional",
-            Options {
+            MeasureOptions {
                 fractional: true,
                 ..small
             },
         ),
         (
             "two-sided",
-            Options {
+            MeasureOptions {
                 two_sided: true,
                 edge_limit: None,
                 ..small
@@ -65,12 +67,12 @@ pub(super) fn measured(collector: &mut Collector) -> Result<()> {
         collector.bytes(&format!("{name}/colored"), &bytes);
     }
     let mesh = generate::interlocking_tori(24, 12);
-    let (survey, table) = Survey::with_table(&mesh, &small, &Silent)?;
+    let (survey, table) = PartialVisibility::with_table(&mesh, &small, &Silent)?;
     collector.plane("tori/table", table.packed());
     numbers(collector, "tori/survey", &survey.finish(&mesh)?);
     let steps = visibility::convergence(
         &generate::interlocking_tori(8, 5),
-        &Options { size: 16, ..small },
+        &MeasureOptions { size: 16, ..small },
         &Silent,
     )?;
     let bits = steps.iter().flat_map(|s| [s.error, s.mesh]);

@@ -29,7 +29,7 @@ pub struct VisibilityOptions {
     /// How much the cost without visibility counts beside the cost with it; at least 0.
     pub tie_weight: f64,
     /// How the visibility of the input's triangles is measured, or was.
-    pub measure: visibility::Options,
+    pub measure: visibility::MeasureOptions,
 }
 
 impl Default for VisibilityOptions {
@@ -37,7 +37,7 @@ impl Default for VisibilityOptions {
         Self {
             quadric: QuadricOptions::default(),
             tie_weight: TIE_WEIGHT,
-            measure: visibility::Options::default(),
+            measure: visibility::MeasureOptions::default(),
         }
     }
 }

@@ -164,10 +164,10 @@ fn what_nobody_sees_goes_first_and_the_rest_keeps_its_shape() {
 fn options(triangles: u64) -> Options {
     let mut options = Options::visibility(Amount::Triangles(triangles));
     options.method = MethodOptions::Visibility(VisibilityOptions {
-        measure: visibility::Options {
+        measure: visibility::MeasureOptions {
             octahedron: 0,
             size: 48,
-            ..visibility::Options::default()
+            ..visibility::MeasureOptions::default()
         },
         ..VisibilityOptions::default()
     });
@@ -194,9 +194,9 @@ fn options_out_of_range_are_refused_by_name() {
         ),
         (
             VisibilityOptions {
-                measure: visibility::Options {
+                measure: visibility::MeasureOptions {
                     octahedron: 9,
-                    ..visibility::Options::default()
+                    ..visibility::MeasureOptions::default()
                 },
                 ..VisibilityOptions::default()
             },

@@ -16,7 +16,7 @@ use lodmark::{
     raster::{self, Plane, Scene},
     view::{Eye, Projection, Sphere, ViewSet, directions, file, frame_of},
     visibility::{
-        self, Options,
+        self, MeasureOptions,
         rays::{Class, RayCaster, Tally},
     },
 };
@@ -228,7 +228,7 @@ fn by_shadows(packages: &Path, mesh: &Mesh, directions: &[DVec3], step: usize) -
 }
 
 /// V of every triangle by the rule of the paper on what Embree casts from the cameras of `options`.
-fn by_paper(packages: &Path, mesh: &Mesh, options: &Options) -> Vec<f64> {
+fn by_paper(packages: &Path, mesh: &Mesh, options: &MeasureOptions) -> Vec<f64> {
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
     let towards = directions::octahedron(options.octahedron);
     let size = options.size;
@@ -258,11 +258,11 @@ fn the_paper_measure_is_that_of_the_same_rule_on_what_embree_casts() {
     for (name, mesh) in meshes {
         let octahedron = if name == "dragon" { 1 } else { octahedron };
         // Embree is given whole triangles.
-        let options = Options {
+        let options = MeasureOptions {
             octahedron,
             size,
             edge_limit: None,
-            ..Options::paper()
+            ..MeasureOptions::paper()
         };
         let theirs = by_paper(packages, &mesh, &options);
         let ours = visibility::measure(&mesh, &options, &Silent).expect("measures");
@@ -311,10 +311,10 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
         };
         let mut before = f64::INFINITY;
         for &(octahedron, size) in coarse.iter().chain([&fine]) {
-            let options = Options {
+            let options = MeasureOptions {
                 octahedron,
                 size,
-                ..Options::default()
+                ..MeasureOptions::default()
             };
             let found = visibility::measure(&mesh, &options, &Silent).expect("measures");
             let ours = mean(&mesh, found.triangles(), &shadows);

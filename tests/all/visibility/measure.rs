@@ -7,7 +7,7 @@ use lodmark::{
     num::{fixed::SubpixelBits, math},
     raster::{self, Scene},
     view::{Projection, Sphere, ViewSet, directions::octahedron, frame_of},
-    visibility::{Alignment, CameraWeights, Options, UnseenRule, measure},
+    visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule, measure},
 };
 use proptest::prelude::*;
 
@@ -49,12 +49,12 @@ fn pixels_alone_give_another_measure_than_the_equation() {
         generate::interlocking_tori(16, 8),
         nested(1).0,
     ] {
-        let options = Options {
+        let options = MeasureOptions {
             octahedron: 1,
             size: 64,
             unseen: UnseenRule::Pixels,
             edge_limit: None,
-            ..Options::paper()
+            ..MeasureOptions::paper()
         };
         let found = measure(&mesh, &options, &Silent).expect("measures");
         let expected = brute_force(&mesh, 1, 64);
@@ -103,9 +103,9 @@ fn the_middle_of_a_square_under_another_sees_more_or_less_than_its_form_factor_l
     ] {
         let mesh = parallel_squares(half);
         for fractional in [false, true] {
-            let options = Options {
+            let options = MeasureOptions {
                 fractional,
-                ..Options::default()
+                ..MeasureOptions::default()
             };
             let found = measure(&mesh, &options, &Silent).expect("measures");
             for v in &found.triangles()[..2] {
@@ -127,10 +127,10 @@ fn a_convex_shape_hides_part_of_itself() {
     ] {
         for options in [
             small(1, 64),
-            Options {
+            MeasureOptions {
                 size: 64,
                 octahedron: 1,
-                ..Options::paper()
+                ..MeasureOptions::paper()
             },
         ] {
             let found = measure(&mesh, &options, &Silent).expect("measures");
@@ -144,7 +144,7 @@ fn a_convex_shape_hides_part_of_itself() {
 fn triangles_too_small_for_a_pixel_count_as_hidden() {
     let mesh = generate::icosphere(5);
     let with = |unseen| {
-        let options = Options {
+        let options = MeasureOptions {
             unseen,
             ..small(1, 40)
         };
@@ -165,7 +165,7 @@ fn what_lies_inside_is_seen_from_outside() {
         let (mesh, outer) = nested(subdivisions);
         for options in [
             small(1, 48),
-            Options {
+            MeasureOptions {
                 fractional: true,
                 ..small(1, 48)
             },
@@ -198,18 +198,18 @@ fn a_large_triangle_is_visible_as_a_whole_where_a_corner_of_it_is() {
     ];
     let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
     let mesh = Mesh::from_triangles(positions, triangles).expect("a mesh");
-    let square = |options: Options| {
+    let square = |options: MeasureOptions| {
         let found = measure(&mesh, &options, &Silent).expect("measures");
         (found.triangles()[0] + found.triangles()[1]) / 2.0
     };
-    let whole = Options {
+    let whole = MeasureOptions {
         edge_limit: None,
         ..small(2, 200)
     };
     assert!(square(whole) > 0.95, "{}", square(whole));
     for better in [
         small(2, 200),
-        Options {
+        MeasureOptions {
             fractional: true,
             ..whole
         },
@@ -222,7 +222,7 @@ fn a_large_triangle_is_visible_as_a_whole_where_a_corner_of_it_is() {
 fn a_part_of_a_triangle_counts_more_than_all_of_it() {
     let mesh = generate::interlocking_tori(16, 8);
     let options = small(1, 64);
-    let fractional = Options {
+    let fractional = MeasureOptions {
         fractional: true,
         ..options
     };
@@ -247,7 +247,7 @@ proptest! {
             }
         }
         let turned = Mesh::new(turned).expect("a mesh");
-        let options = Options { two_sided: true, ..small(1, 48) };
+        let options = MeasureOptions { two_sided: true, ..small(1, 48) };
         let a = measure(&mesh, &options, &Silent).expect("measures");
         let b = measure(&turned, &options, &Silent).expect("measures");
         prop_assert_eq!(a.triangles(), b.triangles());
@@ -284,9 +284,9 @@ fn shapes_of_no_size_or_area_end_badly() {
     for mesh in [point, line] {
         for options in [
             small(1, 32),
-            Options {
+            MeasureOptions {
                 size: 1,
-                ..Options::paper()
+                ..MeasureOptions::paper()
             },
         ] {
             let found = measure(&mesh, &options, &Silent).expect("measures");
@@ -294,7 +294,7 @@ fn shapes_of_no_size_or_area_end_badly() {
             assert!((0.0..=1.0).contains(&found.mesh()));
         }
     }
-    let nothing = measure(&Mesh::default(), &Options::default(), &Silent);
+    let nothing = measure(&Mesh::default(), &MeasureOptions::default(), &Silent);
     assert!(matches!(nothing, Err(Error::Usage(_))));
 }
 
@@ -303,7 +303,7 @@ fn a_needle_makes_more_pieces_than_fit_in_memory() {
     let positions = (0..200_000).map(|i| DVec3::new(f64::from(i) * 1e-6, 0.0, f64::from(i % 2)));
     let triangles = (0..199_998).map(|i| [i, i + 1, i + 2]).collect();
     let mesh = Mesh::from_triangles(positions.collect(), triangles).expect("a mesh");
-    let options = Options {
+    let options = MeasureOptions {
         edge_limit: Some(1.0),
         ..small(0, 4_096)
     };
@@ -313,26 +313,26 @@ fn a_needle_makes_more_pieces_than_fit_in_memory() {
 
 #[test]
 fn an_option_out_of_range_is_measured_all_the_same() {
-    let default = Options::default();
+    let default = MeasureOptions::default();
     for options in [
-        Options {
+        MeasureOptions {
             octahedron: 6,
             ..default
         },
-        Options { size: 0, ..default },
-        Options {
+        MeasureOptions { size: 0, ..default },
+        MeasureOptions {
             size: 4_097,
             ..default
         },
-        Options {
+        MeasureOptions {
             edge_limit: Some(0.5),
             ..default
         },
-        Options {
+        MeasureOptions {
             edge_limit: Some(f64::NAN),
             ..default
         },
-        Options {
+        MeasureOptions {
             edge_limit: Some(f64::INFINITY),
             ..default
         },
@@ -344,7 +344,7 @@ fn an_option_out_of_range_is_measured_all_the_same() {
 
 #[test]
 fn the_paper_and_the_default_are_one_method() {
-    let (paper, default) = (Options::paper(), Options::default());
+    let (paper, default) = (MeasureOptions::paper(), MeasureOptions::default());
     assert_eq!((paper.cameras(), paper.size), (258, 480));
     assert_eq!(paper.alignment, Alignment::Axes);
     assert_eq!(paper.weights, CameraWeights::Equal);
@@ -359,7 +359,7 @@ fn the_paper_and_the_default_are_one_method() {
 #[test]
 fn the_number_of_threads_changes_a_bit() {
     let mesh = generate::interlocking_tori(24, 12);
-    let options = Options {
+    let options = MeasureOptions {
         fractional: true,
         two_sided: true,
         ..small(2, 64)
@@ -390,7 +390,7 @@ impl Progress for Impatient {
 
 #[test]
 fn an_interruption_is_not_heard() {
-    let stopped = measure(&generate::cube(), &Options::default(), &Impatient);
+    let stopped = measure(&generate::cube(), &MeasureOptions::default(), &Impatient);
     assert!(matches!(stopped, Err(Error::Interrupted)));
 }
 
@@ -410,9 +410,9 @@ fn the_bunny_is_not_as_visible_as_was_measured_before() {
     }
     let mesh = mesh::weld(io::read(&path).expect("reads").mesh).mesh;
     let mesh = mesh::canonical(&mesh).mesh;
-    let paper = Options {
+    let paper = MeasureOptions {
         octahedron: 1,
-        ..Options::paper()
+        ..MeasureOptions::paper()
     };
     let found = measure(&mesh, &paper, &Silent).expect("measures").mesh();
     assert!((found - 0.916).abs() < 0.01, "{found}");

@@ -11,15 +11,15 @@ mod survey;
 use glam::DVec3;
 use lodmark::{
     mesh::{Mesh, generate},
-    visibility::Options,
+    visibility::MeasureOptions,
 };
 
 /// A measurement that takes a moment only.
-fn small(octahedron: u32, size: u32) -> Options {
-    Options {
+fn small(octahedron: u32, size: u32) -> MeasureOptions {
+    MeasureOptions {
         octahedron,
         size,
-        ..Options::default()
+        ..MeasureOptions::default()
     }
 }
 

@@ -8,7 +8,7 @@ use lodmark::{
     output::visibility_ply,
     raster::{self, Scene},
     view::{Projection, Sphere, ViewSet, directions::octahedron},
-    visibility::{Options, Survey, convergence, measure, remove_hidden},
+    visibility::{MeasureOptions, PartialVisibility, convergence, measure, remove_hidden},
 };
 use proptest::prelude::*;
 
@@ -46,7 +46,7 @@ proptest! {
         let mesh = generate::torus(1.0, 0.4, 24, 12);
         // One camera looks along the axis of the first quarter of views: much is hidden.
         let options = small(0, 64);
-        let one = Survey::of_views(&mesh, &options, 0..1, &Silent).expect("counts");
+        let one = PartialVisibility::of_views(&mesh, &options, 0..1, &Silent).expect("counts");
         prop_assert!(!one.is_complete());
         let found = measure(&mesh, &options, &Silent).expect("measures");
         let some: Vec<bool> = found.views().iter().map(|&n| n > 0).collect();
@@ -105,7 +105,7 @@ fn a_ring_too_few_of_a_half_hidden_tube_stays() {
         triangles.extend([[a, b, a + 4], [b, b + 4, a + 4]]);
     }
     let mesh = Mesh::from_triangles(positions, triangles).expect("a mesh");
-    let options = Options {
+    let options = MeasureOptions {
         edge_limit: None,
         ..small(2, 128)
     };
@@ -155,7 +155,7 @@ fn attributes_and_materials_are_lost_with_the_hidden_part() {
 fn the_table_has_other_bits_than_the_counts() {
     let mesh = generate::interlocking_tori(10, 6);
     let options = small(1, 48);
-    let (survey, table) = Survey::with_table(&mesh, &options, &Silent).expect("counts");
+    let (survey, table) = PartialVisibility::with_table(&mesh, &options, &Silent).expect("counts");
     let found = survey.finish(&mesh).expect("complete");
     assert_eq!((table.packed().width(), table.packed().height()), (30, 18));
     let mut ones = 0;
@@ -175,7 +175,8 @@ fn the_table_has_other_bits_than_the_counts() {
         "nothing beyond the last triangle"
     );
     for view in [0, 7, 17] {
-        let one = Survey::of_views(&mesh, &options, view..view + 1, &Silent).expect("counts");
+        let one =
+            PartialVisibility::of_views(&mesh, &options, view..view + 1, &Silent).expect("counts");
         assert_eq!(one.views().len(), 1);
         assert!((0..mesh.triangles().len()).any(|t| table.sees(view, t)));
     }
@@ -184,7 +185,7 @@ fn the_table_has_other_bits_than_the_counts() {
 #[test]
 fn more_cameras_bring_no_smaller_error() {
     let mesh = generate::interlocking_tori(8, 5);
-    let options = Options {
+    let options = MeasureOptions {
         edge_limit: None,
         ..small(0, 24)
     };
@@ -196,7 +197,7 @@ fn more_cameras_bring_no_smaller_error() {
     assert!(steps[3].error < 0.02, "{steps:?}");
     let direct = measure(
         &mesh,
-        &Options {
+        &MeasureOptions {
             octahedron: 2,
             ..options
         },

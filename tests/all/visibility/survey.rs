@@ -3,7 +3,7 @@
 use lodmark::{
     Error, Silent,
     mesh::{Mesh, generate},
-    visibility::{Options, Survey, measure},
+    visibility::{MeasureOptions, PartialVisibility, measure},
 };
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
@@ -14,8 +14,8 @@ fn mesh() -> Mesh {
     generate::interlocking_tori(10, 6)
 }
 
-fn part(options: &Options, range: std::ops::Range<u32>) -> Survey {
-    Survey::of_views(&mesh(), options, range, &Silent).expect("counts")
+fn part(options: &MeasureOptions, range: std::ops::Range<u32>) -> PartialVisibility {
+    PartialVisibility::of_views(&mesh(), options, range, &Silent).expect("counts")
 }
 
 proptest! {
@@ -28,10 +28,10 @@ proptest! {
         fractional in any::<bool>(),
         two_sided in any::<bool>(),
     ) {
-        let options = Options { fractional, two_sided, ..small(1, 32) };
+        let options = MeasureOptions { fractional, two_sided, ..small(1, 32) };
         let direct = part(&options, 0..18);
         let ends: Vec<u32> = [0].into_iter().chain(cuts).chain([18]).collect();
-        let mut parts: Vec<Survey> = ends.windows(2).map(|w| part(&options, w[0]..w[1])).collect();
+        let mut parts: Vec<PartialVisibility> = ends.windows(2).map(|w| part(&options, w[0]..w[1])).collect();
         let mut order = order;
         // Two at a time, whichever: sums of sums too.
         while parts.len() > 1 {
@@ -39,7 +39,7 @@ proptest! {
             order = order.rotate_left(7) ^ 0x9e37_79b9;
             let second = order as usize % parts.len();
             let bytes = first.to_bytes();
-            let read = Survey::from_bytes(&bytes, "x").expect("its own bytes");
+            let read = PartialVisibility::from_bytes(&bytes, "x").expect("its own bytes");
             prop_assert_eq!(&read, &first);
             parts[second].merge(&read).expect("other views");
         }
@@ -54,7 +54,7 @@ proptest! {
         let mut bytes = part(&small(0, 16), 1..4).to_bytes();
         let at = at.index(bytes.len());
         let refused = |bytes: &[u8]| {
-            let read = Survey::from_bytes(bytes, "x");
+            let read = PartialVisibility::from_bytes(bytes, "x");
             matches!(read, Err(Error::Input { .. } | Error::Unsupported(_)))
         };
         prop_assert!(refused(&bytes[..at]));
@@ -69,7 +69,7 @@ proptest! {
         cut in any::<prop::sample::Index>(),
         cuts in any::<bool>(),
     ) {
-        let options = Options { two_sided: true, ..small(0, 16) };
+        let options = MeasureOptions { two_sided: true, ..small(0, 16) };
         let bytes = part(&options, 0..6).to_bytes();
         let mut body = bytes[..bytes.len() - 32].to_vec();
         for (at, value) in changes {
@@ -81,7 +81,7 @@ proptest! {
         }
         let checksum = Sha256::digest(&body);
         body.extend(checksum);
-        match Survey::from_bytes(&body, "x") {
+        match PartialVisibility::from_bytes(&body, "x") {
             Ok(mut read) => {
                 let _ = read.finish(&mesh());
                 let whole = read.clone();
@@ -116,7 +116,7 @@ fn a_view_counts_twice() {
 fn parts_that_do_not_belong_together_are_added() {
     let options = small(0, 16);
     let mut sum = part(&options, 0..3);
-    let other = Options {
+    let other = MeasureOptions {
         size: 17,
         ..options
     };
@@ -127,7 +127,8 @@ fn parts_that_do_not_belong_together_are_added() {
             .contains("different options (size 16 and 17)"),
         "{refused}"
     );
-    let cube = Survey::of_views(&generate::cube(), &options, 3..6, &Silent).expect("counts");
+    let cube =
+        PartialVisibility::of_views(&generate::cube(), &options, 3..6, &Silent).expect("counts");
     let refused = sum.merge(&cube).expect_err("another mesh");
     assert!(
         refused.to_string().contains("different meshes"),
@@ -160,7 +161,7 @@ fn a_survey_of_another_mesh_or_of_some_views_is_taken_for_complete() {
 fn views_that_do_not_exist_are_counted() {
     for (start, end) in [(0, 0), (3, 2), (5, 7), (6, 7), (0, u32::MAX)] {
         let range = start..end;
-        let refused = Survey::of_views(&mesh(), &small(0, 16), range.clone(), &Silent);
+        let refused = PartialVisibility::of_views(&mesh(), &small(0, 16), range.clone(), &Silent);
         assert!(matches!(refused, Err(Error::Usage(_))), "{range:?}");
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 
 /// Options of the method `view-bounded`.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(super) struct ViewBound {
+pub(super) struct ViewBoundArgs {
     /// View-bounded method: the viewpoints that the bound holds for, a JSON cell file
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
@@ -44,7 +44,7 @@ pub(super) struct ViewBound {
     bound_out: Option<PathBuf>,
 }
 
-impl ViewBound {
+impl ViewBoundArgs {
     /// True where an error is asked for.
     pub(super) fn has_error(&self) -> bool {
         self.error_deg.is_some() || self.error_px.is_some()

@@ -10,7 +10,7 @@ use crate::{
 
 /// When a viewer may be shown LOW instead of REF.
 #[derive(Clone, Debug, clap::Args, serde::Serialize)]
-pub(super) struct Switch {
+pub(super) struct SwitchArgs {
     /// Say from which distance on LOW is seen less than this off REF, in degrees
     #[arg(
         long,
@@ -36,7 +36,7 @@ pub(super) struct Switch {
     fov: f64,
 }
 
-impl Switch {
+impl SwitchArgs {
     /// The angle that is asked about.
     pub(super) fn aperture(&self) -> Result<Option<Aperture>> {
         match (self.switch_deg, self.switch_px) {

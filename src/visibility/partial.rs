@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{
-    Options, Visibility,
+    MeasureOptions, Visibility,
     counts::{Counts, count},
 };
 use crate::{
@@ -16,35 +16,35 @@ use crate::{
 /// Surveys of the same mesh with the same options and different views add up, in any order and any split, to the same
 /// bytes as a survey of all views. A complete one holds everything that V(t) is computed from.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Survey {
+pub struct PartialVisibility {
     /// Version of the crate that counted.
     pub(super) version: String,
     /// [`content_digest`] of the mesh.
     pub(super) digest: [u8; 32],
-    pub(super) options: Options,
+    pub(super) options: MeasureOptions,
     /// The views that were counted: ascending, apart from each other.
     pub(super) ranges: Vec<Range<u32>>,
     pub(super) counts: Counts,
 }
 
-impl Survey {
+impl PartialVisibility {
     /// Counts what the views of `range` see of `mesh`; the first camera is 0. O(views x (triangles + pixels)).
     ///
     /// # Errors
     /// As [`measure`](super::measure); [`Error::Usage`] also where the range is empty or ends beyond the last camera.
     pub fn of_views(
         mesh: &Mesh,
-        options: &Options,
+        options: &MeasureOptions,
         range: Range<u32>,
         progress: &dyn Progress,
     ) -> Result<Self> {
         Self::watched(mesh, options, range, progress, |_| {})
     }
 
-    /// As [`Survey::of_views`]; `watch` is shown what [`count`] shows.
+    /// As [`PartialVisibility::of_views`]; `watch` is shown what [`count`] shows.
     pub(super) fn watched(
         mesh: &Mesh,
-        options: &Options,
+        options: &MeasureOptions,
         range: Range<u32>,
         progress: &dyn Progress,
         watch: impl FnMut(&[u16]),
@@ -61,7 +61,7 @@ impl Survey {
 
     /// What it was counted with.
     #[must_use]
-    pub fn options(&self) -> &Options {
+    pub fn options(&self) -> &MeasureOptions {
         &self.options
     }
 

@@ -7,12 +7,12 @@ use crate::{
     Result, io,
     mesh::Mesh,
     simplify::visibility::VisibilityOptions,
-    visibility::{Options as MeasureOptions, Survey, Visibility},
+    visibility::{MeasureOptions, PartialVisibility, Visibility},
 };
 
 /// Options of the method `visibility`.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(super) struct Guidance {
+pub(super) struct GuidanceArgs {
     /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, by whichever rule, instead
     /// of measuring
     #[arg(long, value_name = "FILE")]
@@ -25,7 +25,7 @@ pub(super) struct Guidance {
     visibility_size: Option<u32>,
 }
 
-impl Guidance {
+impl GuidanceArgs {
     /// The options of the library, without the file.
     pub(super) fn options(&self) -> VisibilityOptions {
         let default = MeasureOptions::default();
@@ -59,7 +59,7 @@ impl Guidance {
             return Ok(None);
         };
         let bytes = io::bytes::read(path)?;
-        let survey = Survey::from_bytes(&bytes, path)?;
+        let survey = PartialVisibility::from_bytes(&bytes, path)?;
         finish(path, &survey, mesh).map(Some)
     }
 }

@@ -10,7 +10,7 @@ use crate::{
 
 /// Options of the method `tolerance`.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(super) struct WithinDistance {
+pub(super) struct DistanceArgs {
     /// Tolerance method: largest distance between input and result, as a fraction of the bounding-box diagonal
     #[arg(
         long,
@@ -42,7 +42,7 @@ enum VolumeName {
     Vertices,
 }
 
-impl WithinDistance {
+impl DistanceArgs {
     /// True where an error is asked for.
     pub(super) fn has_error(&self) -> bool {
         self.error.is_some() || self.error_abs.is_some()

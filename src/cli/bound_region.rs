@@ -11,7 +11,7 @@ use crate::{
         region::{self, Profile},
         view_cell::{Shape, ViewCell, file},
     },
-    cli::{Common, Verdict, report, source, terminal::Terminal},
+    cli::{Common, Verdict, input, report, terminal::Terminal},
     io,
     mesh::{Mesh, MeshParts},
 };
@@ -23,7 +23,7 @@ A .svg shows the region in a plane through the first point: that of point and ce
 holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl) is the region's surface. \
 Where the region has no end it is cut off at --reach. The cell is drawn in red, of one without an end what is in the \
 picture.")]
-pub(in crate::cli) struct Options {
+pub(super) struct BoundRegionArgs {
     /// Figure (.svg) or mesh (.obj, .ply, .stl)
     #[arg(value_name = "OUT")]
     output: PathBuf,
@@ -50,8 +50,8 @@ pub(in crate::cli) struct Options {
     subdivisions: Option<u32>,
 }
 
-pub(in crate::cli) fn run(
-    options: &Options,
+pub(super) fn run(
+    options: &BoundRegionArgs,
     common: &Common,
     terminal: &Terminal,
 ) -> Result<Verdict> {
@@ -75,7 +75,7 @@ pub(in crate::cli) fn run(
             options.output.display()
         )));
     }
-    source::require_outputs([&options.output].into_iter().chain(common.json.iter()))?;
+    input::require_outputs([&options.output].into_iter().chain(common.json.iter()))?;
     let aperture = Aperture::degrees(options.error_deg)?;
     let cell = file::read(&options.cell)?;
     let directions = options.directions.unwrap_or(720);
@@ -116,7 +116,7 @@ pub(in crate::cli) fn run(
     Ok(Verdict::Good)
 }
 
-impl Options {
+impl BoundRegionArgs {
     fn figure(&self, cell: &ViewCell, aperture: Aperture, directions: u32) -> Result<String> {
         let first = self.points.first().copied().unwrap_or_default();
         let normal = self

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::terminal::Terminal;
+use crate::cli::terminal::Terminal;
 use crate::{
     collapse::{Refusal, Refusals},
     simplify::{Outcome, Stop},

@@ -1,7 +1,7 @@
 //! Aligned columns for eyes.
 
 /// Rows with the first column on the left and numbers on the right, two spaces between; the first row is the head.
-pub(in crate::cli) fn aligned(rows: &[Vec<String>]) -> String {
+pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns)
         .map(|c| {
@@ -26,6 +26,6 @@ pub(in crate::cli) fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// A number with `digits` decimals, `-` for none.
-pub(in crate::cli) fn number(value: Option<f64>, digits: usize) -> String {
+pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".into(), |v| format!("{v:.digits$}"))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Options;
+use super::CompareArgs;
 use crate::{
     Error, Progress, Result,
     cli::terminal::Terminal,
@@ -18,7 +18,7 @@ use crate::{
 /// Writes `view-NN.png` for every view: below the reference and the candidates, above each candidate the reference
 /// with the differences in red.
 pub(super) fn write(
-    options: &Options,
+    options: &CompareArgs,
     folder: &Path,
     reference: &Scene,
     candidates: &[Scene],

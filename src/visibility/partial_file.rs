@@ -11,7 +11,7 @@ use std::{ops::Range, path::Path};
 use sha2::{Digest, Sha256};
 
 use super::{
-    Options, Survey,
+    MeasureOptions, PartialVisibility,
     counts::{Counts, WEIGHT_LIMIT, Weights},
 };
 use crate::{Error, Result};
@@ -19,7 +19,7 @@ use crate::{Error, Result};
 const MAGIC: &[u8; 8] = b"LODMVISI";
 const FORMAT: u32 = 1;
 
-impl Survey {
+impl PartialVisibility {
     /// The file: equal surveys give equal bytes.
     ///
     /// # Panics
@@ -85,7 +85,7 @@ impl Survey {
         }
         reader.rest = &bytes[MAGIC.len() + 4..body];
         let version = reader.text()?;
-        let options: Options = serde_json::from_str(&reader.text()?)
+        let options: MeasureOptions = serde_json::from_str(&reader.text()?)
             .map_err(|e| reader.bad(&format!("the options cannot be read: {e}")))?;
         options
             .check()

@@ -1,6 +1,6 @@
 //! The table F(t, v) itself: the visibility diagram of Figure 1 of Zhang & Turk 2002.
 
-use super::{Options, Survey};
+use super::{MeasureOptions, PartialVisibility};
 use crate::{Error, Progress, Result, mesh::Mesh, raster::Plane};
 
 /// Which view sees which triangle, a bit for each.
@@ -33,14 +33,14 @@ impl VisibilityTable {
     }
 }
 
-impl Survey {
+impl PartialVisibility {
     /// A survey of all views, with the table: another cameras x triangles / 8 bytes.
     ///
     /// # Errors
     /// As [`measure`](super::measure).
     pub fn with_table(
         mesh: &Mesh,
-        options: &Options,
+        options: &MeasureOptions,
         progress: &dyn Progress,
     ) -> Result<(Self, VisibilityTable)> {
         let faces = mesh.triangles().len();

@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use super::{UnseenRule, sight::EMPTY};
+use super::{UnseenRule, seen_parts::EMPTY};
 use crate::{
     num::fixed::{SubpixelBits, depth},
     raster::{Plane, Scene},

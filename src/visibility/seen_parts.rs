@@ -4,7 +4,7 @@
 //! that show it (their future work); for a face in pieces the mean over its area. A face of which anything is seen has
 //! at least one part, rounded down otherwise, so that "never seen" and "always seen" stay exact.
 
-use super::{Options, cameras::Cameras, subdivide::Pieces, unseen::DepthTest};
+use super::{MeasureOptions, cameras::Cameras, depth_test::DepthTest, subdivide::Pieces};
 use crate::{
     raster::{Face, Paint, Projector, ZBuffer},
     view::Cull,
@@ -18,7 +18,7 @@ pub(super) const EMPTY: u64 = u64::MAX;
 
 /// Buffers of one thread.
 #[derive(Clone, Debug)]
-pub(super) struct Sight {
+pub(super) struct SeenParts {
     buffer: ZBuffer,
     test: DepthTest,
     /// Number of pixels that show every piece.
@@ -26,14 +26,14 @@ pub(super) struct Sight {
 }
 
 /// One view while its faces are judged.
-struct Look<'a> {
-    sight: &'a Sight,
+struct PieceView<'a> {
+    sight: &'a SeenParts,
     pieces: &'a Pieces,
     projector: Projector,
     fractional: bool,
 }
 
-impl Sight {
+impl SeenParts {
     /// Empty buffers.
     pub(super) fn new() -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Sight {
         &mut self,
         pieces: &Pieces,
         (cameras, index): (&Cameras, usize),
-        options: &Options,
+        options: &MeasureOptions,
         faces: &mut [u16],
     ) {
         let view = &cameras.set.views[index];
@@ -63,7 +63,7 @@ impl Sight {
             }
         }
         self.test.prepare(options.unseen, &pieces.scene, view, keys);
-        let look = Look {
+        let look = PieceView {
             sight: self,
             pieces,
             projector: Projector::new(view, &cameras.set),
@@ -86,7 +86,7 @@ impl Sight {
     }
 }
 
-impl Look<'_> {
+impl PieceView<'_> {
     /// The seen part of a piece.
     #[inline]
     fn part(&self, piece: usize) -> u16 {

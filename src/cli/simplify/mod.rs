@@ -1,14 +1,15 @@
 //! `lodmark simplify`: one reduced mesh.
 
+mod distance_args;
+mod run_log;
+mod view_bound_args;
+
 use std::{io::Write, path::PathBuf};
 
 use clap::{ArgGroup, ValueEnum};
 use serde::Serialize;
 
-use super::{
-    Common, Verdict, account, guidance::Guidance, report, source, terminal::Terminal,
-    view_bound::ViewBound, within_distance::WithinDistance,
-};
+use super::{Common, Verdict, guidance_args::GuidanceArgs, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     collapse::{Schedule, Topology},
@@ -27,11 +28,13 @@ use crate::{
     },
     view::ViewsName,
 };
+use distance_args::DistanceArgs;
+use view_bound_args::ViewBoundArgs;
 
 /// Write a mesh with fewer triangles that looks the same
 #[derive(Debug, clap::Args)]
 #[command(group(ArgGroup::new("amount").args(["triangles", "ratio"])))]
-pub(super) struct Options {
+pub(super) struct SimplifyArgs {
     /// The mesh to simplify: .obj, .ply or .stl
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -39,7 +42,7 @@ pub(super) struct Options {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Simplify to at most this many triangles
-    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = source::parse_triangles::<u64>)]
+    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = input::parse_triangles::<u64>)]
     triangles: Option<u64>,
     /// Simplify to at most this share of the triangles, above 0 and up to 1
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
@@ -93,11 +96,11 @@ pub(super) struct Options {
     #[arg(long)]
     probabilistic: bool,
     #[command(flatten)]
-    guidance: Guidance,
+    guidance: GuidanceArgs,
     #[command(flatten)]
-    view_bound: ViewBound,
+    view_bound: ViewBoundArgs,
     #[command(flatten)]
-    within: WithinDistance,
+    within: DistanceArgs,
     /// Write the history of collapses, moves and flips, for `lodmark replay`
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -214,7 +217,7 @@ struct Summary<'a> {
     content_sha256: String,
 }
 
-impl Options {
+impl SimplifyArgs {
     /// The options of the library; refuses what the method cannot honour.
     fn resolve(&self) -> Result<RunOptions> {
         let target = match (self.triangles, self.ratio) {
@@ -375,7 +378,7 @@ impl Options {
     }
 }
 
-pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(options: &SimplifyArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let resolved = options.resolve()?;
     io::writable_format(&options.output)?;
     let outputs = [
@@ -384,9 +387,9 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         options.view_bound.output(),
         common.json.as_ref(),
     ];
-    source::require_outputs(outputs.into_iter().flatten())?;
-    let mesh = source::read(&options.input, !options.no_weld, terminal)?;
-    source::require_triangles(&options.input, &mesh)?;
+    input::require_outputs(outputs.into_iter().flatten())?;
+    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
+    input::require_triangles(&options.input, &mesh)?;
     let triangles_in = mesh.triangles().len();
     let canonical = mesh::canonical(&mesh);
     drop(mesh);
@@ -401,7 +404,7 @@ pub(super) fn run(options: &Options, common: &Common, terminal: &Terminal) -> Re
         Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
         None => simplify(&canonical.mesh, &resolved, terminal)?,
     };
-    account::tell(&options.input, triangles_in, &outcome, terminal);
+    run_log::tell(&options.input, triangles_in, &outcome, terminal);
     let bounded = matches!(
         outcome.options.method,
         MethodOptions::ViewBounded(_) | MethodOptions::Tolerance(_)
