@@ -38,12 +38,12 @@
 //! Data flows one way; an import only points to the left, and a test holds the table of allowed imports.
 //!
 //! ```text
-//! error, num -> mesh -> io
+//! error, num -> mesh -> io            encode: low, used by all
 //!                |
 //!                +-> view -> raster -> metric --+     pictures
 //!                |             +-> visibility --+
 //!                +-> bound ---------------------+
-//!                +-> collapse ------------------+-> simplify -> output -> cli     surgery meets pictures in simplify
+//!                +-> collapse ------------------+-> simplify -> selfcheck -> cli     surgery meets pictures in simplify
 //! ```
 //!
 //! | module | owns |
@@ -58,7 +58,8 @@
 //! | `bound` | what is guaranteed: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
 //! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay |
 //! | `simplify` | the methods, their options and outcomes |
-//! | `output` | PNG, npy, JSON, contact sheets, goldens |
+//! | `encode` | PNG, npy, JSON, hashes of pixels, contact sheets; whole files or none |
+//! | `selfcheck` | goldens: what this version computes for a fixed set of small cases |
 //!
 //! Two seams carry later work: a `collapse::Method` proposes a position and a key for a site and hears of commits;
 //! `raster::Unrender` engines take a change, not a collapse.
@@ -94,6 +95,10 @@ pub mod collapse;
 #[cfg(not(feature = "internals"))]
 mod collapse;
 #[cfg(feature = "internals")]
+pub mod encode;
+#[cfg(not(feature = "internals"))]
+mod encode;
+#[cfg(feature = "internals")]
 pub mod io;
 #[cfg(not(feature = "internals"))]
 mod io;
@@ -110,13 +115,13 @@ pub mod num;
 #[cfg(not(feature = "internals"))]
 mod num;
 #[cfg(feature = "internals")]
-pub mod output;
-#[cfg(not(feature = "internals"))]
-mod output;
-#[cfg(feature = "internals")]
 pub mod raster;
 #[cfg(not(feature = "internals"))]
 mod raster;
+#[cfg(feature = "internals")]
+pub mod selfcheck;
+#[cfg(not(feature = "internals"))]
+mod selfcheck;
 #[cfg(feature = "internals")]
 pub mod simplify;
 #[cfg(not(feature = "internals"))]

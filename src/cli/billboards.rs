@@ -8,7 +8,6 @@ use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{planar::Aperture, view_cell},
-    output,
     simplify::billboards::{self, Limit, Up},
 };
 
@@ -87,7 +86,7 @@ pub(super) fn run(
     let mesh = input::read(&options.input, true, terminal)?;
     input::require_triangles(&options.input, &mesh)?;
     let cloud = billboards::billboards(&mesh, &cell, &wanted, terminal)?;
-    let path = output::billboards::write(&options.folder, &cloud, &mesh, terminal)?;
+    let path = billboards::files::write(&options.folder, &cloud, &mesh, terminal)?;
     let horizontal = cloud.quads.iter().filter(|q| q.horizontal).count();
     let most = |q: &&billboards::Quad| q.texels.contains(&wanted.texels);
     let coarse = cloud.quads.iter().filter(most).count();

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
+    encode::{png, sheet},
     num::fixed::SubpixelBits,
-    output::{png, sheet},
     raster::{self, Plane, Scene},
     view::{self, Cull, Projection, Sphere, ViewSet, ViewsName, frame_of},
     visibility::rays::{Class, Classified, RayCaster, Shown, Tally, cap},

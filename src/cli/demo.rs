@@ -6,13 +6,14 @@ use serde::Serialize;
 
 use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
-    Error, Progress, Result, io,
-    mesh::{canonical, content_sha256, generate},
-    metric::{appearance::appearance, difference::signed_picture, surface::surface_distance},
-    output::{
-        png, report as json,
+    Error, Progress, Result,
+    encode::{
+        json, png,
         sheet::{Style, Tile, sheet},
     },
+    io,
+    mesh::{canonical, content_sha256, generate},
+    metric::{appearance::appearance, difference::signed_picture, surface::surface_distance},
     raster::{self, Plane, Scene},
     simplify::{Amount, MethodOptions, Options as RunOptions, image::Preset, simplify},
     view::{Sphere, View, ViewSet, frame_of},

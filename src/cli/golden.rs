@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
     Result,
-    output::golden::{self, Group, Record},
+    selfcheck::{self, Group, Record},
 };
 
 /// Hold what this version computes against the recorded values, or record them
@@ -42,7 +42,7 @@ pub(super) fn run(options: &GoldenArgs, common: &Common, terminal: &Terminal) ->
     let items = Group::all(terminal)?;
     match &options.verb {
         Verb::Check { place, out } => {
-            let mismatches = golden::check(&place.dir, &items, out)?;
+            let mismatches = selfcheck::check(&place.dir, &items, out)?;
             report(
                 common,
                 "golden",
@@ -70,7 +70,7 @@ pub(super) fn run(options: &GoldenArgs, common: &Common, terminal: &Terminal) ->
             Ok(Verdict::Negative)
         }
         Verb::Bless(place) => {
-            golden::bless(&place.dir, &items)?;
+            selfcheck::bless(&place.dir, &items)?;
             answer!("{}: recorded {} goldens", place.dir.display(), items.len());
             Ok(Verdict::Good)
         }

@@ -207,7 +207,7 @@ fn report(
         return Ok(());
     };
     let version = env!("CARGO_PKG_VERSION");
-    crate::output::report::write(
+    crate::encode::json::write(
         path,
         &Report {
             schema: 1,

@@ -6,8 +6,9 @@ use clap::ValueEnum;
 
 use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
-    Error, Progress, Result, io,
-    output::{hash, npy, png},
+    Error, Progress, Result,
+    encode::{hash, npy, png},
+    io,
     raster::{self, Scene},
     view::{
         self, Cull, Interpolation, Projection, Shading, Sphere, ViewSet, ViewsName,

@@ -3,7 +3,7 @@
 use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    output::golden::{GROUPS, Record},
+    selfcheck::{GROUPS, Record},
 };
 
 /// Compute the goldens that this program was built with, without any files; exit code 1 where a bit differs

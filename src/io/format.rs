@@ -2,8 +2,12 @@
 
 use std::{fmt, path::Path};
 
-use super::{atomic, bytes, obj_read, obj_write, ply_read, ply_write, stl_read, stl_write};
-use crate::{Error, Result, mesh::Mesh};
+use super::{obj_read, obj_write, ply_read, ply_write, stl_read, stl_write};
+use crate::{
+    Error, Result,
+    encode::{atomic, bytes},
+    mesh::Mesh,
+};
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]

@@ -5,8 +5,6 @@
 //! notes about what the format cannot keep; reading back what it wrote changes no bit of the rest. The network, and
 //! files other than the one named (material libraries), are never touched.
 
-pub mod atomic;
-pub mod bytes;
 mod decimal;
 mod format;
 mod obj_read;
@@ -22,5 +20,6 @@ mod stl_read;
 mod stl_write;
 mod summary;
 
+pub use crate::encode::{atomic, bytes};
 pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, writable_format, write};
 pub use summary::Summary;

@@ -8,6 +8,7 @@
 
 pub mod appearance;
 pub mod difference;
+mod difference_strip;
 pub mod folds;
 pub mod luma;
 mod proximity;
@@ -15,6 +16,7 @@ pub mod silhouette;
 pub mod surface;
 mod triangle;
 
+pub use difference_strip::difference_strip;
 pub use triangle::closest_point;
 
 pub use folds::{Sides, Surroundings};

@@ -5,6 +5,8 @@
 
 pub mod fixed;
 mod frame;
+mod grid;
 pub mod math;
 
 pub use frame::{Frame, Precision};
+pub use grid::Plane;

@@ -10,16 +10,15 @@
 //! in [`LayerEngine`].
 
 mod draw;
-mod grid;
 mod pixel_rect;
 mod scene;
 mod unrender;
 
+pub use crate::num::Plane;
 pub use draw::{
     Face, FaceGeometry, Paint, Picture, Pieces, Projector, ScreenVertex, Setup, Shader, ZBuffer,
     coverage, depths, ids, keys, luma, luma_sums, mean_luma, mean_rgb, rgb, sum_samples,
 };
-pub use grid::Plane;
 pub use pixel_rect::Region;
 pub use scene::Scene;
 pub use unrender::{

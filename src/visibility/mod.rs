@@ -21,6 +21,7 @@ mod measure;
 mod options;
 mod partial;
 mod partial_file;
+pub mod ply;
 pub mod rays;
 mod seen_parts;
 mod subdivide;

@@ -9,14 +9,14 @@ use std::{
 
 use lodmark::{
     Silent,
-    mesh::generate,
-    num::fixed::SubpixelBits,
-    output::{
-        golden::{GROUPS, Group, Item, Mismatch, RECORD_NAME, Record, bless, check, picture_path},
+    encode::{
         hash::plane_sha256,
         png::{self, Picture},
     },
+    mesh::generate,
+    num::fixed::SubpixelBits,
     raster::{self, Plane, Scene},
+    selfcheck::{GROUPS, Group, Item, Mismatch, RECORD_NAME, Record, bless, check, picture_path},
     view::{Sphere, ViewSet},
 };
 

@@ -11,14 +11,15 @@ use crate::{
         view_cell::ViewCell,
     },
     cli::terminal::Terminal,
+    encode::png,
     io,
     mesh::Mesh,
+    metric::difference_strip,
     num::{
         Frame,
         fixed::SubpixelBits,
         math::{length, tan},
     },
-    output::{png, sheet},
     raster::{self, Scene},
     view::{self, BACKGROUND, View, ViewSet},
 };
@@ -56,7 +57,7 @@ pub(super) fn write(
         let draw =
             |scene: &Scene| raster::mean_luma(&raster::luma_sums(scene, view, &set), set.samples);
         let [expected, actual] = [draw(&scenes[0]), draw(&scenes[1])];
-        let strip = sheet::difference_strip(&expected, &actual, SCALE)?;
+        let strip = difference_strip(&expected, &actual, SCALE)?;
         png::write_grey(&folder.join(name), &strip)?;
     }
     let text = view::file::to_json(&set.leave_frame(frame), &[])?;

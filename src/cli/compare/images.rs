@@ -8,14 +8,15 @@ use super::{CompareArgs, Found, has_extension, verdict};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, report, table, terminal::Terminal},
-    metric::{
-        difference::{Comparison, compare},
-        luma::{SquaredError, squared_error},
-    },
-    output::{
+    encode::{
         npy,
         png::{self, Picture},
-        sheet::{Style, Tile, difference_strip, sheet},
+        sheet::{Style, Tile, sheet},
+    },
+    metric::{
+        difference::{Comparison, compare},
+        difference_strip,
+        luma::{SquaredError, squared_error},
     },
     raster::Plane,
 };

@@ -8,19 +8,20 @@ use super::{CompareArgs, Found, red_differences, verdict};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, input, report, table, terminal::Terminal},
+    encode::{
+        png,
+        sheet::{Style, Tile, sheet},
+    },
     mesh::{Edges, Mesh, content_sha256},
     metric::{
         appearance::{Appearance, WorstView, appearance, flat, image_error_views, pictures},
+        difference_strip,
         folds::{Folds, folds},
         luma::SquaredError,
         silhouette::{SilhouetteHistogram, silhouette_histogram},
         surface::{Distances, SurfaceDistance, surface_distance},
     },
     num::Frame,
-    output::{
-        png,
-        sheet::{Style, Tile, difference_strip, sheet},
-    },
     raster::Scene,
     view::{self, Eye, Projection, Sphere, ViewSet, ViewsName, frame_of},
 };

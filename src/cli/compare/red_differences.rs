@@ -6,11 +6,11 @@ use super::CompareArgs;
 use crate::{
     Error, Progress, Result,
     cli::terminal::Terminal,
-    metric::{appearance::pictures, difference::red_picture, luma::squared_error},
-    output::{
+    encode::{
         png,
         sheet::{Style, Tile, sheet},
     },
+    metric::{appearance::pictures, difference::red_picture, luma::squared_error},
     raster::Scene,
     view::{Interpolation, ViewSet},
 };

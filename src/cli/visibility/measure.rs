@@ -9,9 +9,9 @@ use super::{chart, merge};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, input, report, terminal::Terminal},
+    encode::npy,
     io,
     mesh::{self, Mesh},
-    output::{npy, visibility_ply},
     visibility::{
         self, ConvergenceStep, MeasureOptions, PartialVisibility, Visibility, VisibilityTable,
         convergence, remove_hidden,
@@ -186,7 +186,7 @@ pub(in crate::cli) fn run(
         npy::write_plane(path, table.packed())?;
     }
     if let Some(path) = &options.out {
-        write(path, &visibility_ply::encode(&mesh, &found)?)?;
+        write(path, &visibility::ply::encode(&mesh, &found)?)?;
     }
     if let Some([csv, svg]) = &figure {
         write(csv, chart::csv(&steps).as_bytes())?;

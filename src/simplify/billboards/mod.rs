@@ -10,6 +10,7 @@
 mod bearing;
 mod cloud;
 mod error;
+pub mod files;
 mod flat;
 mod options;
 mod plan;

@@ -8,8 +8,8 @@
 use std::fs;
 
 use lodmark::{
+    encode::png,
     mesh::{Edges, Mesh, generate},
-    output::png,
     raster,
 };
 use serde_json::Value;

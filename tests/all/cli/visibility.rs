@@ -192,7 +192,7 @@ fn every_product_is_written_at_once() {
             "r.json",
         ],
     );
-    let table = lodmark::output::npy::read_plane::<u8>(&dir.path().join("f.npy")).expect("reads");
+    let table = lodmark::encode::npy::read_plane::<u8>(&dir.path().join("f.npy")).expect("reads");
     assert_eq!((table.width(), table.height()), (20, 6));
     let outer = io::read(&dir.path().join("outer.obj")).expect("reads").mesh;
     assert_eq!(outer.triangles().len(), 80);

@@ -4,14 +4,14 @@ use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use lodmark::{
     Error,
-    io::atomic,
-    output::{
+    encode::{
         hash::plane_sha256,
-        npy,
+        json, npy,
         png::{self, Picture},
-        report,
-        sheet::{Style, Tile, difference_strip, sheet},
+        sheet::{Style, Tile, sheet},
     },
+    io::atomic,
+    metric::difference_strip,
     raster::Plane,
 };
 use proptest::prelude::*;
@@ -262,21 +262,19 @@ fn a_report_has_one_form_and_no_infinities() {
     };
     let text = "{\n  \"schema\": 1,\n  \"rms\": 0.1,\n  \"psnr\": null,\n  \"views\": [\n    null,\n    null,\n    \
                 1e-7\n  ]\n}\n";
-    assert_eq!(report::to_text(&value).expect("has a JSON form"), text);
+    assert_eq!(json::to_text(&value).expect("has a JSON form"), text);
     let folder = folder();
     let path = folder.path().join("a.json");
-    report::write(&path, &value).expect("written");
+    json::write(&path, &value).expect("written");
     assert_eq!(fs::read_to_string(&path).expect("read"), text);
     let sorted = serde_json::json!({"b": 1, "a": 2});
     assert_eq!(
-        report::to_text(&sorted).expect("JSON"),
+        json::to_text(&sorted).expect("JSON"),
         "{\n  \"a\": 2,\n  \"b\": 1\n}\n"
     );
     let keyless: BTreeMap<[u8; 2], u8> = [([1, 2], 3)].into();
     assert_eq!(
-        report::to_text(&keyless)
-            .expect_err("no string")
-            .exit_code(),
+        json::to_text(&keyless).expect_err("no string").exit_code(),
         70
     );
 }

@@ -9,10 +9,11 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use glam::DVec3;
 use lodmark::{
-    Silent, io,
+    Silent,
+    encode::npy,
+    io,
     mesh::{self, Mesh, generate},
     num::fixed::SubpixelBits,
-    output::npy,
     raster::{self, Plane, Scene},
     view::{Eye, Projection, Sphere, ViewSet, directions, file, frame_of},
     visibility::{

@@ -5,10 +5,9 @@ use lodmark::{
     io::{self, Format},
     mesh::{ChannelKind, Mesh, MeshParts, generate},
     num::math,
-    output::visibility_ply,
     raster::{self, Scene},
     view::{Projection, Sphere, ViewSet, directions::octahedron},
-    visibility::{MeasureOptions, PartialVisibility, convergence, measure, remove_hidden},
+    visibility::{MeasureOptions, PartialVisibility, convergence, measure, ply, remove_hidden},
 };
 use proptest::prelude::*;
 
@@ -211,7 +210,7 @@ fn more_cameras_bring_no_smaller_error() {
 fn a_coloured_mesh_is_read_back_as_another_one() {
     for mesh in [generate::torus(1.0, 0.4, 8, 5), generate::cube()] {
         let found = measure(&mesh, &small(0, 32), &Silent).expect("measures");
-        let bytes = visibility_ply::encode(&mesh, &found).expect("writes");
+        let bytes = ply::encode(&mesh, &found).expect("writes");
         let read = io::read_bytes(Format::Ply, &bytes, "x")
             .expect("reads")
             .mesh;
@@ -226,6 +225,6 @@ fn a_coloured_mesh_is_read_back_as_another_one() {
         );
     }
     let cube = measure(&generate::cube(), &small(0, 32), &Silent).expect("measures");
-    let refused = visibility_ply::encode(&generate::tetrahedron(), &cube);
+    let refused = ply::encode(&generate::tetrahedron(), &cube);
     assert!(matches!(refused, Err(Error::Usage(_))));
 }

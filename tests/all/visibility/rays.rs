@@ -276,7 +276,7 @@ fn the_command_answers_with_classes_a_picture_and_its_exit_code() {
     let edges = report["tally"]["counts"]["edge"].as_u64().expect("a count");
     assert!(edges > 0 && report["explained"].as_u64() >= Some(edges));
     assert!(report["tally"]["worst"][0]["raster"]["depth"].is_u64());
-    let picture = lodmark::output::png::read(&dir.path().join("p.png")).expect("a picture");
+    let picture = lodmark::encode::png::read(&dir.path().join("p.png")).expect("a picture");
     let picture = picture.into_rgb();
     assert!(picture.values().contains(&Class::Edge.color()));
     assert!(picture.width() > 5 * 96 && picture.height() > 4 * 96);

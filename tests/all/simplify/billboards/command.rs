@@ -5,8 +5,8 @@ use std::process::Command;
 use lodmark::{
     Error, Progress,
     bound::planar::Aperture,
-    io, output,
-    simplify::billboards::{Limit, Options, billboards},
+    io,
+    simplify::billboards::{Limit, Options, billboards, files},
 };
 
 use super::{before_the_city, blocks, cloud, within};
@@ -28,7 +28,7 @@ fn a_user_who_wants_to_stop_waits_for_the_end() {
     assert!(matches!(stopped, Err(Error::Interrupted)));
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
     let whole = cloud(&mesh, &before_the_city(), &within(0.1));
-    let stopped = output::billboards::write(folder.path(), &whole, &mesh, &Stopped);
+    let stopped = files::write(folder.path(), &whole, &mesh, &Stopped);
     assert!(matches!(stopped, Err(Error::Interrupted)));
     assert!(!folder.path().join("billboards.obj").exists());
 }

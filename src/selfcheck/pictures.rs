@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::{Collector, files::sphere_of};
 use crate::{
     Error, Result,
+    encode::png::Picture,
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, generate},
     num::fixed::SubpixelBits,
-    output::png::Picture,
     raster::{self, Plane, Scene},
     view::{
         self, Cull, Interpolation, Light, Projection, Shading, Specular, View, ViewSet, ViewsName,

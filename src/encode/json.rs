@@ -7,7 +7,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::{Error, Result, io::atomic};
+use super::atomic;
+use crate::{Error, Result};
 
 /// The text of a report.
 ///

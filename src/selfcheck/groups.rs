@@ -5,11 +5,11 @@ use sha2::{Digest, Sha256};
 use super::{billboards, bounds, files, hidden, pictures, results, visibility};
 use crate::{
     Progress, Result,
-    mesh::{Mesh, content_sha256},
-    output::{
+    encode::{
         hash::{Raw, plane_sha256},
         png::Picture,
     },
+    mesh::{Mesh, content_sha256},
     raster::Plane,
 };
 

@@ -8,11 +8,8 @@ use std::path::Path;
 
 use npyz::{DType, TypeStr, WriterBuilder};
 
-use crate::{
-    Error, Result,
-    io::{atomic, bytes},
-    raster::Plane,
-};
+use super::{atomic, bytes};
+use crate::{Error, Result, num::Plane};
 
 /// A number that arrays are made of.
 pub trait Element: Copy + npyz::Serialize {

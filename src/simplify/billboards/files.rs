@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::png;
+use super::Cloud;
 use crate::{
     Error, Progress, Result,
-    io::{self, atomic},
+    encode::{atomic, png},
+    io,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts},
     num::Precision,
-    simplify::billboards::Cloud,
 };
 
 /// The mesh of a cloud: two triangles per quad with texture coordinates and a material, then the triangles that stay.

@@ -10,14 +10,13 @@ use std::{
 use super::{Item, Mismatch, Record};
 use crate::{
     Error, Result,
-    io::atomic,
-    metric::difference::compare,
-    output::{
+    encode::{
+        atomic,
         hash::plane_sha256,
+        json,
         png::{self, Picture},
-        report,
-        sheet::difference_strip,
     },
+    metric::{difference::compare, difference_strip},
 };
 
 /// File name of the record.
@@ -86,7 +85,7 @@ pub fn check(folder: &Path, items: &[Item], out: &Path) -> Result<Vec<Mismatch>>
         for (path, strip) in &strips {
             write(path, strip)?;
         }
-        report::write(&out.join("mismatches.json"), &mismatches)?;
+        json::write(&out.join("mismatches.json"), &mismatches)?;
     }
     Ok(mismatches)
 }

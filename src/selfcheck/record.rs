@@ -71,7 +71,7 @@ impl Record {
     /// # Errors
     /// As [`Record::parse`]: the program was built from a damaged file.
     pub fn embedded() -> Result<Self, String> {
-        Self::parse(include_str!("../../../golden/golden.txt"))
+        Self::parse(include_str!("../../golden/golden.txt"))
     }
 
     /// Reads the text of a record.

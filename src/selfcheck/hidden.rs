@@ -3,11 +3,11 @@
 use super::{Collector, files::sphere_of, results::outcome_items};
 use crate::{
     Error, Result, Silent,
-    mesh::{canonical, generate},
-    output::{
+    encode::{
         png::Picture,
         sheet::{Style, Tile, sheet},
     },
+    mesh::{canonical, generate},
     raster::{Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Replay,

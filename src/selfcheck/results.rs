@@ -6,15 +6,15 @@ use super::{Collector, files::sphere_of, pictures::colored};
 use crate::{
     Error, Result, Silent,
     bound::{tolerance::Source, view_cell::ViewCell},
+    encode::{
+        png::Picture,
+        sheet::{Style, Tile, sheet},
+    },
     mesh::{Materials, Mesh, MeshParts, canonical, generate},
     metric::{
         luma::ViewErrors,
         silhouette::silhouette_histogram,
         surface::{OneSided, surface_distance},
-    },
-    output::{
-        png::Picture,
-        sheet::{Style, Tile, sheet},
     },
     raster::{Plane, Scene, luma_sums, mean_luma},
     simplify::{

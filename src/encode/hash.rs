@@ -6,7 +6,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::raster::Plane;
+use crate::num::Plane;
 
 /// A pixel with a fixed little-endian form.
 pub trait Raw: Copy {

@@ -3,12 +3,8 @@
 //! Binary, little-endian; face properties `red`, `green`, `blue` and `quality`, as MeshLab reads them. Triangles and
 //! vertices keep their order. Other attributes are left out: the colours are the point.
 
-use crate::{
-    Error, Result,
-    mesh::Mesh,
-    num::Precision,
-    visibility::{Visibility, color},
-};
+use super::{Visibility, color};
+use crate::{Error, Result, mesh::Mesh, num::Precision};
 
 /// The bytes of the file.
 ///

@@ -4,8 +4,8 @@
 use super::{Collector, files::sphere_of};
 use crate::{
     Result, Silent,
+    encode::png::Picture,
     mesh::{Mesh, generate},
-    output::{png::Picture, visibility_ply},
     raster::{self, Scene},
     view::{Projection, ViewSet, directions::octahedron, frame_of},
     visibility::{
@@ -63,7 +63,7 @@ pub(super) fn measured(collector: &mut Collector) -> Result<()> {
         let found = measure(&mesh, &small, &Silent)?;
         let kept = remove_hidden(&mesh, &found, 1)?;
         collector.mesh(&format!("{name}/kept"), &kept);
-        let bytes = visibility_ply::encode(&mesh, &found)?;
+        let bytes = visibility::ply::encode(&mesh, &found)?;
         collector.bytes(&format!("{name}/colored"), &bytes);
     }
     let mesh = generate::interlocking_tori(24, 12);

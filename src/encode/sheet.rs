@@ -3,11 +3,7 @@
 //! Labels are drawn with a built-in font and cut at the edge of their cell. Lengths are pixels.
 
 use super::{font, png::SIDE_LIMIT};
-use crate::{
-    Error, Result,
-    metric::difference::{Levels, signed_picture},
-    raster::Plane,
-};
+use crate::{Error, Result, num::Plane};
 
 /// A pixel that a grey level can be drawn into.
 pub trait Ink: Copy {
@@ -117,34 +113,6 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
         page.text(x, baseline, end, tile.label, style);
     }
     Ok(page.plane)
-}
-
-/// Expected, actual and their signed difference (see [`signed_picture`]) side by side, labelled.
-///
-/// # Errors
-/// [`Error::Usage`] where the sizes differ, `scale` is 0, or the strip would exceed 16,384 pixels.
-pub fn difference_strip<P: Ink + Levels>(
-    expected: &Plane<P>,
-    actual: &Plane<P>,
-    scale: u8,
-) -> Result<Plane<P>> {
-    let difference = signed_picture(expected, actual, scale)?;
-    let label = format!("difference x{scale}");
-    let tiles = [
-        Tile {
-            picture: expected,
-            label: "expected",
-        },
-        Tile {
-            picture: actual,
-            label: "actual",
-        },
-        Tile {
-            picture: &difference,
-            label: &label,
-        },
-    ];
-    sheet(&tiles, 3, Style::default())
 }
 
 /// A plane that is drawn on; what lies outside is cut off.

@@ -14,7 +14,11 @@ use image::{
     codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder},
 };
 
-use crate::{Error, Result, io::atomic, num::fixed::luma, raster::Plane};
+use super::atomic;
+use crate::{
+    Error, Result,
+    num::{Plane, fixed::luma},
+};
 
 /// Most pixels in a row or column.
 pub const SIDE_LIMIT: u32 = 4 * 4_096;

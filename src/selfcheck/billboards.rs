@@ -6,8 +6,8 @@ use super::Collector;
 use crate::{
     Error, Result, Silent,
     bound::{planar::Aperture, view_cell::ViewCell},
+    encode::png::Picture,
     mesh::{Mesh, generate},
-    output::png::Picture,
     simplify::billboards::{Limit, Options, billboards},
 };
 

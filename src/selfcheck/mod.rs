@@ -11,14 +11,14 @@
 mod billboards;
 mod bounds;
 mod files;
-mod folder;
+mod golden_files;
+mod groups;
 mod hidden;
-mod item;
 mod pictures;
 mod record;
 mod results;
 mod visibility;
 
-pub use folder::{RECORD_NAME, bless, check, picture_path};
-pub use item::{Collector, GROUPS, Group, Item};
+pub use golden_files::{RECORD_NAME, bless, check, picture_path};
+pub use groups::{Collector, GROUPS, Group, Item};
 pub use record::{Mismatch, Record};

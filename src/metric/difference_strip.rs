@@ -1,0 +1,36 @@
+//! Pictures of a difference: expected, actual and what is between them, side by side.
+
+use super::difference::{Levels, signed_picture};
+use crate::{
+    Result,
+    encode::sheet::{Ink, Style, Tile, sheet},
+    num::Plane,
+};
+
+/// Expected, actual and their signed difference (see [`signed_picture`]) side by side, labelled.
+///
+/// # Errors
+/// [`Error::Usage`](crate::Error::Usage) where the sizes differ, `scale` is 0, or the strip would exceed 16,384 pixels.
+pub fn difference_strip<P: Ink + Levels>(
+    expected: &Plane<P>,
+    actual: &Plane<P>,
+    scale: u8,
+) -> Result<Plane<P>> {
+    let difference = signed_picture(expected, actual, scale)?;
+    let label = format!("difference x{scale}");
+    let tiles = [
+        Tile {
+            picture: expected,
+            label: "expected",
+        },
+        Tile {
+            picture: actual,
+            label: "actual",
+        },
+        Tile {
+            picture: &difference,
+            label: &label,
+        },
+    ];
+    sheet(&tiles, 3, Style::default())
+}
