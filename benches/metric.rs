@@ -12,7 +12,7 @@ use lodmark::{
         silhouette::silhouette_histogram,
         surface::{DEFAULT_SAMPLES, surface_distance},
     },
-    raster::Plane,
+    raster::Grid,
     view::Eye,
 };
 
@@ -49,8 +49,8 @@ fn metrics(criterion: &mut Criterion) {
     group.bench_function("silhouette histogram, 69k triangles, 20 views", |b| {
         b.iter(|| silhouette_histogram(black_box(&fine), &eyes, &Silent));
     });
-    let image = Plane::filled(512, 512, 500_u16);
-    let other = Plane::filled(512, 512, 501_u16);
+    let image = Grid::filled(512, 512, 500_u16);
+    let other = Grid::filled(512, 512, 501_u16);
     group.bench_function("squared luma error, 512 x 512", |b| {
         b.iter(|| squared_error(black_box(&image), &other, 4));
     });

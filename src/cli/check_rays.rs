@@ -7,7 +7,7 @@ use crate::{
     Error, Progress, Result,
     encode::{png, sheet},
     num::fixed::SubpixelBits,
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{self, Cull, Projection, Sphere, ViewSet, ViewsName, frame_of},
     visibility::rays::{Class, Classified, RayCaster, Shown, Tally, cap},
 };
@@ -200,7 +200,7 @@ fn tell(tally: &Tally, set: &ViewSet, cap: f64, verdict: Verdict) {
 }
 
 /// A picture of the classes; a pixel that differs is a cross, bugs on top.
-fn colored(view: &Classified) -> Plane<[u8; 3]> {
+fn colored(view: &Classified) -> Grid<[u8; 3]> {
     let mut picture = view.classes.map(Class::color);
     let (width, height) = (picture.width(), picture.height());
     let mut order: Vec<_> = view.witnesses.iter().collect();
@@ -250,7 +250,7 @@ fn require_sheet(set: &ViewSet) -> Result<()> {
 }
 
 /// All views side by side.
-fn contact_sheet(pictures: &[Plane<[u8; 3]>]) -> Result<Plane<[u8; 3]>> {
+fn contact_sheet(pictures: &[Grid<[u8; 3]>]) -> Result<Grid<[u8; 3]>> {
     let labels: Vec<String> = (0..pictures.len()).map(|i| format!("view {i}")).collect();
     let tiles: Vec<_> = pictures
         .iter()

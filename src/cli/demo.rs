@@ -14,7 +14,7 @@ use crate::{
     io,
     mesh::{canonical, content_sha256, generate},
     metric::{appearance::appearance, difference::signed_picture, surface::surface_distance},
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     simplify::{Amount, MethodOptions, Options as RunOptions, image::Preset, simplify},
     view::{Sphere, View, ViewSet, frame_of},
 };
@@ -59,7 +59,7 @@ pub(super) fn run(options: &DemoArgs, common: &Common, terminal: &Terminal) -> R
     let folder = &options.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
     let mut found = Vec::new();
-    let mut tiles: Vec<(Plane<u8>, String)> = Vec::new();
+    let mut tiles: Vec<(Grid<u8>, String)> = Vec::new();
     for &(name, extension, share) in SCENES {
         terminal.step("demo", found.len() as u64, 3 * SCENES.len() as u64)?;
         scene(
@@ -120,7 +120,7 @@ fn scene(
     (name, extension, share): (&'static str, &str, f64),
     terminal: &Terminal,
     found: &mut Vec<Judged>,
-    tiles: &mut Vec<(Plane<u8>, String)>,
+    tiles: &mut Vec<(Grid<u8>, String)>,
 ) -> Result<()> {
     let mesh = match name {
         "casing" => Some(generate::engine(1)),
@@ -201,6 +201,6 @@ fn by_images(amount: Amount) -> RunOptions {
     options
 }
 
-fn picture(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u8> {
+fn picture(scene: &Scene, view: &View, set: &ViewSet) -> Grid<u8> {
     raster::mean_luma(&raster::luma_sums(scene, view, set), set.samples)
 }

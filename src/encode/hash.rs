@@ -6,7 +6,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::num::Plane;
+use crate::num::Grid;
 
 /// A pixel with a fixed little-endian form.
 pub trait Raw: Copy {
@@ -41,7 +41,7 @@ impl Raw for [u8; 3] {
 
 /// SHA-256 of a plane as 64 lower-case hexadecimal digits.
 #[must_use]
-pub fn plane_sha256<T: Raw>(plane: &Plane<T>) -> String {
+pub fn plane_sha256<T: Raw>(plane: &Grid<T>) -> String {
     let mut hash = Sha256::new();
     for number in [plane.width(), plane.height(), T::BYTES] {
         hash.update(number.to_le_bytes());

@@ -9,7 +9,7 @@ use std::path::Path;
 use npyz::{DType, TypeStr, WriterBuilder};
 
 use super::{atomic, bytes};
-use crate::{Error, Result, num::Plane};
+use crate::{Error, Result, num::Grid};
 
 /// A number that arrays are made of.
 pub trait Element: Copy + npyz::Serialize {
@@ -40,7 +40,7 @@ element!(u8: "|u1", u16: "<u2", u32: "<u4", f32: "<f4", f64: "<f8");
 ///
 /// # Errors
 /// As [`atomic::write`].
-pub fn write_plane<T: Element>(path: &Path, plane: &Plane<T>) -> Result<()> {
+pub fn write_plane<T: Element>(path: &Path, plane: &Grid<T>) -> Result<()> {
     let shape = [u64::from(plane.height()), u64::from(plane.width())];
     write(path, plane.values(), shape)
 }
@@ -78,10 +78,10 @@ fn dtype<T: Element>() -> Result<DType> {
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Input`] where the file is damaged or holds another array.
-pub fn read_plane<T: Element>(path: &Path) -> Result<Plane<T>> {
+pub fn read_plane<T: Element>(path: &Path) -> Result<Grid<T>> {
     let (values, rows, columns) = read(path)?;
     match (u32::try_from(columns), u32::try_from(rows)) {
-        (Ok(width), Ok(height)) => Plane::new(width, height, values)
+        (Ok(width), Ok(height)) => Grid::new(width, height, values)
             .ok_or_else(|| Error::Internal("an array changed its size".into())),
         _ => Err(Error::input(
             path,

@@ -17,7 +17,7 @@ use image::{
 use super::atomic;
 use crate::{
     Error, Result,
-    num::{Plane, fixed::luma},
+    num::{Grid, fixed::luma},
 };
 
 /// Most pixels in a row or column.
@@ -36,15 +36,15 @@ const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Picture {
     /// 8-bit grey.
-    Grey(Plane<u8>),
+    Grey(Grid<u8>),
     /// 8-bit red, green, blue.
-    Rgb(Plane<[u8; 3]>),
+    Rgb(Grid<[u8; 3]>),
 }
 
 impl Picture {
     /// The picture in grey: luma for colours (equal levels give that level).
     #[must_use]
-    pub fn into_luma(self) -> Plane<u8> {
+    pub fn into_luma(self) -> Grid<u8> {
         match self {
             Self::Grey(plane) => plane,
             Self::Rgb(plane) => plane.map(luma),
@@ -53,7 +53,7 @@ impl Picture {
 
     /// The picture in colours.
     #[must_use]
-    pub fn into_rgb(self) -> Plane<[u8; 3]> {
+    pub fn into_rgb(self) -> Grid<[u8; 3]> {
         match self {
             Self::Grey(plane) => plane.map(|v| [v; 3]),
             Self::Rgb(plane) => plane,
@@ -65,7 +65,7 @@ impl Picture {
 ///
 /// # Errors
 /// [`Error::Usage`] for a picture without pixels or beyond [`SIDE_LIMIT`]; as [`atomic::write`].
-pub fn write_grey(path: &Path, picture: &Plane<u8>) -> Result<()> {
+pub fn write_grey(path: &Path, picture: &Grid<u8>) -> Result<()> {
     let size = checked_size(picture)?;
     write(path, picture.values(), size, ExtendedColorType::L8)
 }
@@ -74,7 +74,7 @@ pub fn write_grey(path: &Path, picture: &Plane<u8>) -> Result<()> {
 ///
 /// # Errors
 /// As [`write_grey`].
-pub fn write_rgb(path: &Path, picture: &Plane<[u8; 3]>) -> Result<()> {
+pub fn write_rgb(path: &Path, picture: &Grid<[u8; 3]>) -> Result<()> {
     let size = checked_size(picture)?;
     let bytes = picture.values().as_flattened();
     write(path, bytes, size, ExtendedColorType::Rgb8)
@@ -84,13 +84,13 @@ pub fn write_rgb(path: &Path, picture: &Plane<[u8; 3]>) -> Result<()> {
 ///
 /// # Errors
 /// As [`write_grey`].
-pub fn write_rgba(path: &Path, picture: &Plane<[u8; 4]>) -> Result<()> {
+pub fn write_rgba(path: &Path, picture: &Grid<[u8; 4]>) -> Result<()> {
     let size = checked_size(picture)?;
     let bytes = picture.values().as_flattened();
     write(path, bytes, size, ExtendedColorType::Rgba8)
 }
 
-fn checked_size<T: Copy>(picture: &Plane<T>) -> Result<(u32, u32)> {
+fn checked_size<T: Copy>(picture: &Grid<T>) -> Result<(u32, u32)> {
     let size = (picture.width(), picture.height());
     if size.0 == 0 || size.1 == 0 || size.0 > SIDE_LIMIT || size.1 > SIDE_LIMIT {
         return Err(Error::Usage(format!(
@@ -179,10 +179,10 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Picture> {
     let mut pixels = vec![0; width as usize * height as usize * channels];
     decoder.read_image(&mut pixels).map_err(damaged)?;
     let picture = if channels == 1 {
-        Plane::new(width, height, pixels).map(Picture::Grey)
+        Grid::new(width, height, pixels).map(Picture::Grey)
     } else {
         let (rgb, _) = pixels.as_chunks::<3>();
-        Plane::new(width, height, rgb.to_vec()).map(Picture::Rgb)
+        Grid::new(width, height, rgb.to_vec()).map(Picture::Rgb)
     };
     picture.ok_or_else(|| Error::Internal("a PNG picture changed its size".into()))
 }

@@ -3,7 +3,7 @@
 //! Labels are drawn with a built-in font and cut at the edge of their cell. Lengths are pixels.
 
 use super::{font, png::SIDE_LIMIT};
-use crate::{Error, Result, num::Plane};
+use crate::{Error, Result, num::Grid};
 
 /// A pixel that a grey level can be drawn into.
 pub trait Ink: Copy {
@@ -27,7 +27,7 @@ impl Ink for [u8; 3] {
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<'a, P> {
     /// The picture.
-    pub picture: &'a Plane<P>,
+    pub picture: &'a Grid<P>,
     /// One line of printable ASCII; empty for none. Other characters are drawn as boxes.
     pub label: &'a str,
 }
@@ -62,7 +62,7 @@ impl Default for Style {
 ///
 /// # Errors
 /// [`Error::Usage`] without tiles, for 0 columns or dots of size 0, and where a side would exceed 16,384 pixels.
-pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Result<Plane<P>> {
+pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Result<Grid<P>> {
     if tiles.is_empty() || columns == 0 || !(1..=SIDE_LIMIT).contains(&style.dot) {
         return Err(Error::Usage(format!(
             "a sheet of {} pictures in {columns} columns with dots of {} pixels; expected at least 1 of each",
@@ -70,7 +70,7 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
             style.dot
         )));
     }
-    let widest = |size: fn(&Plane<P>) -> u32| {
+    let widest = |size: fn(&Grid<P>) -> u32| {
         tiles
             .iter()
             .map(|t| u64::from(size(t.picture)))
@@ -78,7 +78,7 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
             .unwrap_or(0)
     };
     let (padding, dot) = (u64::from(style.padding), u64::from(style.dot));
-    let (width, height) = (widest(Plane::width), widest(Plane::height));
+    let (width, height) = (widest(Grid::width), widest(Grid::height));
     let label = if tiles.iter().all(|t| t.label.is_empty()) {
         0
     } else {
@@ -99,7 +99,7 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
         )));
     }
     let mut page = Page {
-        plane: Plane::filled(
+        plane: Grid::filled(
             sheet_width as u32,
             sheet_height as u32,
             P::grey(style.paper),
@@ -117,7 +117,7 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
 
 /// A plane that is drawn on; what lies outside is cut off.
 struct Page<P> {
-    plane: Plane<P>,
+    plane: Grid<P>,
 }
 
 impl<P: Ink> Page<P> {
@@ -128,7 +128,7 @@ impl<P: Ink> Page<P> {
         }
     }
 
-    fn picture(&mut self, x: u32, y: u32, picture: &Plane<P>) {
+    fn picture(&mut self, x: u32, y: u32, picture: &Grid<P>) {
         for row in 0..picture.height() {
             for column in 0..picture.width() {
                 self.set(x + column, y + row, picture.at(column, row));

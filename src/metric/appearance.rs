@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::luma::{SquaredError, ViewErrors, squared_error};
 use crate::{
     Error, Progress, Result,
-    raster::{Plane, Scene, luma_sums, mean_luma},
+    raster::{Grid, Scene, luma_sums, mean_luma},
     view::{Interpolation, Projection, Sphere, View, ViewSet, directions::dodecahedron},
 };
 
@@ -163,7 +163,7 @@ pub fn pictures<const N: usize>(
     views: &ViewSet,
     view: usize,
     shading: Interpolation,
-) -> Result<[Plane<u8>; N]> {
+) -> Result<[Grid<u8>; N]> {
     let count = views.views.len();
     let view = views.views.get(view).ok_or_else(|| {
         Error::Usage(format!(

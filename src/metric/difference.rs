@@ -7,7 +7,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Error, Result, raster::Plane};
+use crate::{Error, Result, raster::Grid};
 
 /// A pixel that can be compared value by value.
 pub trait Pixel: Copy + PartialEq {
@@ -161,8 +161,8 @@ impl fmt::Display for List<'_> {
 
 /// Compares two images; O(pixels).
 #[must_use]
-pub fn compare<P: Pixel>(expected: &Plane<P>, actual: &Plane<P>) -> Comparison {
-    let size = |p: &Plane<P>| (p.width(), p.height());
+pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> Comparison {
+    let size = |p: &Grid<P>| (p.width(), p.height());
     if size(expected) != size(actual) {
         return Comparison::Sizes {
             expected: size(expected),
@@ -205,10 +205,10 @@ pub fn compare<P: Pixel>(expected: &Plane<P>, actual: &Plane<P>) -> Comparison {
 /// # Errors
 /// [`Error::Usage`] where the sizes differ or `scale` is 0.
 pub fn signed_picture<P: Levels>(
-    expected: &Plane<P>,
-    actual: &Plane<P>,
+    expected: &Grid<P>,
+    actual: &Grid<P>,
     scale: u8,
-) -> Result<Plane<P>> {
+) -> Result<Grid<P>> {
     let (width, height) = (expected.width(), expected.height());
     require_same_size(expected, actual, scale)?;
     let level = |e: u8, a: u8| {
@@ -221,7 +221,7 @@ pub fn signed_picture<P: Levels>(
         .zip(actual.values())
         .map(|(&e, &a)| e.zip(a, level))
         .collect();
-    Plane::new(width, height, pixels)
+    Grid::new(width, height, pixels)
         .ok_or_else(|| Error::Internal("a difference picture changed its size".into()))
 }
 
@@ -231,7 +231,7 @@ pub fn signed_picture<P: Levels>(
 ///
 /// # Errors
 /// [`Error::Usage`] where the sizes differ or `scale` is 0.
-pub fn red_picture(expected: &Plane<u8>, actual: &Plane<u8>, scale: u8) -> Result<Plane<[u8; 3]>> {
+pub fn red_picture(expected: &Grid<u8>, actual: &Grid<u8>, scale: u8) -> Result<Grid<[u8; 3]>> {
     require_same_size(expected, actual, scale)?;
     let pixel = |(&e, &a): (&u8, &u8)| {
         let red = (u32::from(scale) * u32::from(e.abs_diff(a))).min(255);
@@ -240,11 +240,11 @@ pub fn red_picture(expected: &Plane<u8>, actual: &Plane<u8>, scale: u8) -> Resul
         [(rest + red) as u8, rest as u8, rest as u8]
     };
     let pixels = expected.values().iter().zip(actual.values()).map(pixel);
-    Plane::new(expected.width(), expected.height(), pixels.collect())
+    Grid::new(expected.width(), expected.height(), pixels.collect())
         .ok_or_else(|| Error::Internal("a difference picture changed its size".into()))
 }
 
-fn require_same_size<P: Copy>(expected: &Plane<P>, actual: &Plane<P>, scale: u8) -> Result<()> {
+fn require_same_size<P: Copy>(expected: &Grid<P>, actual: &Grid<P>, scale: u8) -> Result<()> {
     let (width, height) = (expected.width(), expected.height());
     if (width, height) != (actual.width(), actual.height()) {
         return Err(Error::Usage(format!(

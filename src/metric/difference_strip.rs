@@ -4,7 +4,7 @@ use super::difference::{Levels, signed_picture};
 use crate::{
     Result,
     encode::sheet::{Ink, Style, Tile, sheet},
-    num::Plane,
+    num::Grid,
 };
 
 /// Expected, actual and their signed difference (see [`signed_picture`]) side by side, labelled.
@@ -12,10 +12,10 @@ use crate::{
 /// # Errors
 /// [`Error::Usage`](crate::Error::Usage) where the sizes differ, `scale` is 0, or the strip would exceed 16,384 pixels.
 pub fn difference_strip<P: Ink + Levels>(
-    expected: &Plane<P>,
-    actual: &Plane<P>,
+    expected: &Grid<P>,
+    actual: &Grid<P>,
     scale: u8,
-) -> Result<Plane<P>> {
+) -> Result<Grid<P>> {
     let difference = signed_picture(expected, actual, scale)?;
     let label = format!("difference x{scale}");
     let tiles = [

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Error, Result,
     num::math::{log10, sqrt},
-    raster::Plane,
+    raster::Grid,
 };
 
 /// The largest level of one sample.
@@ -91,8 +91,8 @@ impl SquaredError {
 /// # Errors
 /// [`Error::Usage`] where the sizes differ, an image is empty, `samples` is 0, or a value exceeds `255 * samples`.
 pub fn squared_error<T: Copy + Into<u32>>(
-    reference: &Plane<T>,
-    image: &Plane<T>,
+    reference: &Grid<T>,
+    image: &Grid<T>,
     samples: u32,
 ) -> Result<SquaredError> {
     same_size(
@@ -153,8 +153,8 @@ impl ViewErrors {
     /// # Errors
     /// [`Error::Usage`] where the sets have different numbers of images; as [`squared_error`] for each pair.
     pub fn between<T: Copy + Into<u32>>(
-        reference: &[Plane<T>],
-        images: &[Plane<T>],
+        reference: &[Grid<T>],
+        images: &[Grid<T>],
         samples: u32,
     ) -> Result<Self> {
         if reference.len() != images.len() {

@@ -1,15 +1,15 @@
-//! A rectangle of values: the images this crate makes.
+//! [`Grid`]: a rectangle of values, as all images of this crate are.
 
 /// `width * height` values, row by row from the top left.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Plane<T> {
+pub struct Grid<T> {
     width: u32,
     height: u32,
     values: Vec<T>,
 }
 
-impl<T: Copy> Plane<T> {
-    /// A plane filled with one value.
+impl<T: Copy> Grid<T> {
+    /// A grid filled with one value.
     #[must_use]
     pub fn filled(width: u32, height: u32, value: T) -> Self {
         Self {
@@ -19,7 +19,7 @@ impl<T: Copy> Plane<T> {
         }
     }
 
-    /// A plane of the given values, row by row; `None` where their number is not `width * height`.
+    /// A grid of the given values, row by row; `None` where their number is not `width * height`.
     #[must_use]
     pub fn new(width: u32, height: u32, values: Vec<T>) -> Option<Self> {
         (values.len() == width as usize * height as usize).then_some(Self {
@@ -56,7 +56,7 @@ impl<T: Copy> Plane<T> {
     /// The value at column `x` of row `y`.
     ///
     /// # Panics
-    /// Outside the plane.
+    /// Outside the grid.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> T {
         assert!(
@@ -68,10 +68,10 @@ impl<T: Copy> Plane<T> {
         self.values[y as usize * self.width as usize + x as usize]
     }
 
-    /// A plane of the same size with `f` of every value.
+    /// A grid of the same size with `f` of every value.
     #[must_use]
-    pub fn map<U>(&self, f: impl FnMut(T) -> U) -> Plane<U> {
-        Plane {
+    pub fn map<U>(&self, f: impl FnMut(T) -> U) -> Grid<U> {
+        Grid {
             width: self.width,
             height: self.height,
             values: self.values.iter().copied().map(f).collect(),

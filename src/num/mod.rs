@@ -9,4 +9,4 @@ mod grid;
 pub mod math;
 
 pub use frame::{Frame, Precision};
-pub use grid::Plane;
+pub use grid::Grid;

@@ -14,13 +14,14 @@ mod pixel_rect;
 mod scene;
 mod unrender;
 
-pub use crate::num::Plane;
+pub use crate::num::Grid;
 pub use draw::{
-    Face, FaceGeometry, Paint, Picture, Pieces, Projector, ScreenVertex, Setup, Shader, ZBuffer,
+    Drawn, Face, FaceGeometry, Paint, Picture, Projector, ScreenVertex, Setup, Shader, ZBuffer,
     coverage, depths, ids, keys, luma, luma_sums, mean_luma, mean_rgb, rgb, sum_samples,
 };
-pub use pixel_rect::Region;
+pub use pixel_rect::PixelRect;
 pub use scene::Scene;
 pub use unrender::{
-    Added, BucketEngine, BucketScratch, Change, Glance, LayerEngine, LayerScratch, Model, Unrender,
+    Added, BucketEngine, BucketScratch, Change, LayerEngine, LayerScratch, Model, Unrender,
+    ViewSubset,
 };

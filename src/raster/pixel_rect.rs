@@ -4,7 +4,7 @@
 ///
 /// A region limits loops over pixels. It never clips geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Region {
+pub struct PixelRect {
     /// First column.
     pub x0: i32,
     /// First row.
@@ -15,8 +15,8 @@ pub struct Region {
     pub y1: i32,
 }
 
-impl Region {
-    /// No pixel at all; the neutral element of [`Region::union`].
+impl PixelRect {
+    /// No pixel at all; the neutral element of [`PixelRect::union`].
     pub const EMPTY: Self = Self {
         x0: i32::MAX,
         y0: i32::MAX,

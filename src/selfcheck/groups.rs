@@ -10,7 +10,7 @@ use crate::{
         png::Picture,
     },
     mesh::{Mesh, content_sha256},
-    raster::Plane,
+    raster::Grid,
 };
 
 /// One result: a name, its exact value, and for some a picture for eyes.
@@ -150,7 +150,7 @@ impl Collector {
     }
 
     /// The pixels of a plane.
-    pub(super) fn plane<T: Raw>(&mut self, name: &str, plane: &Plane<T>) {
+    pub(super) fn plane<T: Raw>(&mut self, name: &str, plane: &Grid<T>) {
         self.text(name, plane_sha256(plane));
     }
 

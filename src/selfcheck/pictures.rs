@@ -8,7 +8,7 @@ use crate::{
     encode::png::Picture,
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{
         self, Cull, Interpolation, Light, Projection, Shading, Specular, View, ViewSet, ViewsName,
         frame_of,
@@ -95,7 +95,7 @@ fn crowd(collector: &mut Collector) -> Result<()> {
     let scene = Scene::of(&mesh.enter_frame(frame));
     let picture = raster::luma(&scene, &set.views[0], &set);
     collector.plane("crowd/ids", &raster::ids(&picture));
-    let depths: Plane<u32> = raster::depths(&picture);
+    let depths: Grid<u32> = raster::depths(&picture);
     collector.plane("crowd/depth", &depths);
     collector.plane("crowd/luma", &picture.tones);
     Ok(())

@@ -16,7 +16,7 @@ use crate::{
         silhouette::silhouette_histogram,
         surface::{OneSided, surface_distance},
     },
-    raster::{Plane, Scene, luma_sums, mean_luma},
+    raster::{Grid, Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Outcome, Replay,
         image::{DrivingShading, ImageOptions, Polish, Preset, Start},
@@ -307,7 +307,7 @@ pub(super) fn compared(collector: &mut Collector) -> Result<()> {
             let views = set.views.iter();
             views
                 .map(|v| luma_sums(scene, v, &set))
-                .collect::<Vec<Plane<u16>>>()
+                .collect::<Vec<Grid<u16>>>()
         });
         let errors = ViewErrors::between(&expected, &actual, set.samples * set.samples)?;
         let sums = errors.views().iter().map(|e| e.sum.to_string());

@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::{UnseenRule, seen_parts::EMPTY};
 use crate::{
     num::fixed::{SubpixelBits, depth},
-    raster::{Plane, Scene},
+    raster::{Grid, Scene},
     view::View,
 };
 
@@ -68,7 +68,7 @@ impl DepthTest {
         rule: UnseenRule,
         scene: &Scene,
         view: &View,
-        keys: &Plane<u64>,
+        keys: &Grid<u64>,
     ) {
         self.rule = rule;
         self.size = keys.width() as i32;
@@ -161,7 +161,7 @@ impl DepthTest {
         !(sides.contains(&1) && sides.contains(&-1))
     }
 
-    fn extend_planes(&mut self, scene: &Scene, keys: &Plane<u64>) {
+    fn extend_planes(&mut self, scene: &Scene, keys: &Grid<u64>) {
         self.slopes.clear();
         let mut center_y = HALF;
         for row in keys.values().chunks(keys.width() as usize) {
@@ -182,7 +182,7 @@ impl DepthTest {
         }
     }
 
-    fn deepest_neighbors(&mut self, keys: &Plane<u64>) {
+    fn deepest_neighbors(&mut self, keys: &Grid<u64>) {
         let size = self.size as usize;
         let depth = |x: usize, y: usize| match keys.values()[y * size + x] {
             EMPTY => f64::INFINITY,

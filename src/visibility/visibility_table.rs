@@ -1,12 +1,12 @@
 //! The table F(t, v) itself: the visibility diagram of Figure 1 of Zhang & Turk 2002.
 
 use super::{MeasureOptions, PartialVisibility};
-use crate::{Error, Progress, Result, mesh::Mesh, raster::Plane};
+use crate::{Error, Progress, Result, mesh::Mesh, raster::Grid};
 
 /// Which view sees which triangle, a bit for each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VisibilityTable {
-    packed: Plane<u8>,
+    packed: Grid<u8>,
     triangles: usize,
 }
 
@@ -14,7 +14,7 @@ impl VisibilityTable {
     /// A row for every camera with a bit for every triangle, eight to a byte, the first in the lowest bit;
     /// `numpy.unpackbits(F, axis=1, count=triangles, bitorder="little")` unpacks it. Bits beyond the last triangle are 0.
     #[must_use]
-    pub fn packed(&self) -> &Plane<u8> {
+    pub fn packed(&self) -> &Grid<u8> {
         &self.packed
     }
 
@@ -53,7 +53,7 @@ impl PartialVisibility {
                 bytes.extend(view.chunks(8).map(byte));
             }
         })?;
-        let packed = Plane::new(faces.div_ceil(8) as u32, options.cameras(), bytes)
+        let packed = Grid::new(faces.div_ceil(8) as u32, options.cameras(), bytes)
             .ok_or_else(|| Error::Internal("a table without all of its rows".into()))?;
         let table = VisibilityTable {
             packed,

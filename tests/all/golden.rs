@@ -15,7 +15,7 @@ use lodmark::{
     },
     mesh::generate,
     num::fixed::SubpixelBits,
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     selfcheck::{GROUPS, Group, Item, Mismatch, RECORD_NAME, Record, bless, check, picture_path},
     view::{Sphere, ViewSet},
 };
@@ -30,7 +30,7 @@ fn folder() -> tempfile::TempDir {
 
 /// Items that cost nothing, one of them with a picture.
 fn few_items() -> Vec<Item> {
-    let plane = Plane::new(4, 2, (0..8).map(|i| i * 30).collect()).expect("4 * 2 values");
+    let plane = Grid::new(4, 2, (0..8).map(|i| i * 30).collect()).expect("4 * 2 values");
     let item = |name: &str, value: &str, picture| Item {
         name: name.into(),
         value: value.into(),
@@ -157,7 +157,7 @@ fn a_picture_that_no_longer_shows_what_is_hashed_passes() {
     let items = few_items();
     bless(folder.path(), &items).expect("target is writable");
     let path = picture_path(folder.path(), "a/two");
-    let other = Plane::filled(4, 2, 9);
+    let other = Grid::filled(4, 2, 9);
     png::write_grey(&path, &other).expect("target is writable");
     let found = check(folder.path(), &items, &out).expect("readable");
     assert_eq!(names(&found), ["a/two.png"]);

@@ -18,14 +18,14 @@ use crate::{
         difference_strip,
         luma::{SquaredError, squared_error},
     },
-    raster::Plane,
+    raster::Grid,
 };
 
 /// What a file holds.
 enum Image {
     Picture(Picture),
     /// Ids or depths.
-    Numbers(Plane<u32>),
+    Numbers(Grid<u32>),
 }
 
 #[derive(Serialize)]

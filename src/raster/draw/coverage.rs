@@ -1,7 +1,7 @@
 //! Which pixels a triangle covers, and how deep it is there: scanline spans by exact integer division, and the
 //! half-space test for small triangles. Both visit the same pixels with the same depths.
 
-use super::{Region, Setup, setup::EdgeFunction};
+use super::{PixelRect, Setup, setup::EdgeFunction};
 
 /// Up to this width, in pixels, testing every pixel of the box is cheaper than three divisions per row.
 const HALF_SPACE_WIDTH: usize = 12;
@@ -12,7 +12,7 @@ impl Setup {
     /// The depth is `floor(sum(e_i z_i) / area)`, exactly: it depends neither on the region nor on which corner is
     /// first, and never leaves the range of the corners.
     #[inline]
-    pub fn fragments(&self, region: Region, visit: impl FnMut(i32, i32, u32)) {
+    pub fn fragments(&self, region: PixelRect, visit: impl FnMut(i32, i32, u32)) {
         let bounds = self.bounds.intersection(region);
         if bounds.is_empty() {
         } else if bounds.width() <= HALF_SPACE_WIDTH && self.narrow {
@@ -30,7 +30,7 @@ impl Setup {
 
     /// Tests every pixel of the box.
     #[inline]
-    pub(super) fn half_space(&self, bounds: Region, mut visit: impl FnMut(i32, i32, u32)) {
+    pub(super) fn half_space(&self, bounds: PixelRect, mut visit: impl FnMut(i32, i32, u32)) {
         let [e0, e1, e2] = &self.edges;
         for y in bounds.y0..bounds.y1 {
             let mut w0 = e0.at(bounds.x0, y);
@@ -49,7 +49,7 @@ impl Setup {
 
     /// Solves every edge for x on every row, then steps the depth along the span by quotient and remainder.
     #[inline]
-    pub(super) fn spans(&self, bounds: Region, mut visit: impl FnMut(i32, i32, u32)) {
+    pub(super) fn spans(&self, bounds: PixelRect, mut visit: impl FnMut(i32, i32, u32)) {
         let slope = self.weighted(|e| e.dx);
         let area = i128::from(self.area);
         // Where a row covers two pixels, the slope is at most the area times the depth range, so the quotient fits;
@@ -92,7 +92,7 @@ impl Setup {
 
     /// First covered column of a row and one past the last, by exact floor division; `None` where there is none.
     #[inline]
-    fn span(&self, y: i32, bounds: Region) -> Option<(i32, i32)> {
+    fn span(&self, y: i32, bounds: PixelRect) -> Option<(i32, i32)> {
         let (mut low, mut high) = (i64::from(bounds.x0), i64::from(bounds.x1) - 1);
         for e in &self.edges {
             // Covered where dx * x + rest >= 0.
@@ -156,7 +156,7 @@ mod tests {
 
         #[test]
         fn spans_and_half_spaces_never_differ((bits, corners) in corners()) {
-            let image = Region::image(40, 36);
+            let image = PixelRect::image(40, 36);
             if let Some(setup) = Setup::new(corners, bits, Cull::None, image) {
                 let (mut a, mut b) = (Vec::new(), Vec::new());
                 setup.spans(setup.bounds(), |x, y, z| a.push((x, y, z)));

@@ -18,9 +18,9 @@ pub struct Face {
 
 /// Whether all of a face could be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pieces {
+pub enum Drawn {
     /// Every piece was visited (there may be none).
-    Drawn,
+    Whole,
     /// A coordinate is not finite after the transform: nothing, or not all, was drawn.
     Dropped,
 }
@@ -34,13 +34,13 @@ impl Face {
         projector: &Projector,
         cull: Cull,
         mut visit: impl FnMut(&Setup, &Paint),
-    ) -> Pieces {
+    ) -> Drawn {
         if !self.screen.iter().any(ScreenVertex::is_outside) {
             if let Some(setup) = Setup::new(self.screen, projector.bits(), cull, projector.image())
             {
                 visit(&setup, &self.paint);
             }
-            return Pieces::Drawn;
+            return Drawn::Whole;
         }
         self.clipped(projector, cull, &mut visit)
     }
@@ -51,7 +51,7 @@ impl Face {
         projector: &Projector,
         cull: Cull,
         visit: &mut dyn FnMut(&Setup, &Paint),
-    ) -> Pieces {
+    ) -> Drawn {
         let corners = self.positions.map(|p| projector.clip(p));
         let (bits, image) = (projector.bits(), projector.image());
         let complete = match self.paint {
@@ -72,9 +72,9 @@ impl Face {
             }),
         };
         if complete {
-            Pieces::Drawn
+            Drawn::Whole
         } else {
-            Pieces::Dropped
+            Drawn::Dropped
         }
     }
 }

@@ -10,14 +10,14 @@ mod coverage;
 mod face;
 mod paint;
 mod picture;
-mod projector;
+pub(super) mod projector;
 mod samples;
 mod setup;
 mod shade;
 pub(super) mod small_triangle;
 mod zbuffer;
 
-pub use face::{Face, Pieces};
+pub use face::{Drawn, Face};
 pub use paint::Paint;
 pub use picture::{Picture, coverage, depths, ids, keys, luma, rgb};
 pub use projector::{Projector, ScreenVertex};
@@ -27,4 +27,4 @@ pub use shade::{FaceGeometry, Shader};
 pub(super) use zbuffer::EMPTY;
 pub use zbuffer::ZBuffer;
 
-use super::{Plane, Region, Scene};
+use super::{Grid, PixelRect, Scene};

@@ -3,7 +3,7 @@
 //! The z-buffer finds the triangles; then only those that are seen are shaded, each where it is seen.
 
 use super::{
-    FaceGeometry, Paint, Plane, Projector, Scene, Setup, Shader,
+    FaceGeometry, Grid, Paint, Projector, Scene, Setup, Shader,
     zbuffer::{EMPTY, ZBuffer},
 };
 use crate::view::{Interpolation, View, ViewSet};
@@ -12,9 +12,9 @@ use crate::view::{Interpolation, View, ViewSet};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture<T> {
     /// `depth << 32 | id` of the nearest triangle, or `u64::MAX` for the background.
-    pub keys: Plane<u64>,
+    pub keys: Grid<u64>,
     /// What it looks like there.
-    pub tones: Plane<T>,
+    pub tones: Grid<T>,
     /// Triangles that could not be drawn because a coordinate is not finite after the transform.
     pub dropped: u64,
 }
@@ -23,7 +23,7 @@ fn draw<T: Copy>(
     scene: &Scene,
     view: &View,
     set: &ViewSet,
-    tones: impl FnOnce(&Plane<u64>) -> Plane<T>,
+    tones: impl FnOnce(&Grid<u64>) -> Grid<T>,
 ) -> Picture<T> {
     let mut buffer = ZBuffer::new(rayon::current_num_threads());
     buffer.draw(scene, view, set);
@@ -118,11 +118,11 @@ impl<'a> Shading<'a> {
     /// Every sample of a picture with these keys.
     fn plane<T: Copy>(
         mut self,
-        keys: &Plane<u64>,
+        keys: &Grid<u64>,
         background: T,
         tone: impl Fn(&Paint, &Setup, i32, i32) -> T,
-    ) -> Plane<T> {
-        let mut tones = Plane::filled(keys.width(), keys.height(), background);
+    ) -> Grid<T> {
+        let mut tones = Grid::filled(keys.width(), keys.height(), background);
         let width = keys.width() as usize;
         let rows = keys.values().chunks_exact(width.max(1));
         for (y, (keys, row)) in rows
@@ -142,7 +142,7 @@ impl<'a> Shading<'a> {
     }
 
     /// As [`Shading::plane`] for levels, where every triangle has one.
-    fn levels(mut self, keys: &Plane<u64>, background: u8) -> Plane<u8> {
+    fn levels(mut self, keys: &Grid<u64>, background: u8) -> Grid<u8> {
         const UNKNOWN: u16 = u16::MAX;
         let mut levels = vec![UNKNOWN; self.scene.triangle_count()];
         keys.map(|key| {
@@ -195,7 +195,7 @@ pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
 
 /// Triangle ids of a picture: id + 1, and 0 for the background.
 #[must_use]
-pub fn ids<T>(picture: &Picture<T>) -> Plane<u32> {
+pub fn ids<T>(picture: &Picture<T>) -> Grid<u32> {
     picture
         .keys
         .map(|k| if k == EMPTY { 0 } else { k as u32 + 1 })
@@ -203,12 +203,12 @@ pub fn ids<T>(picture: &Picture<T>) -> Plane<u32> {
 
 /// Depths of a picture in units of 2^-32; `u32::MAX` for the background.
 #[must_use]
-pub fn depths<T>(picture: &Picture<T>) -> Plane<u32> {
+pub fn depths<T>(picture: &Picture<T>) -> Grid<u32> {
     picture.keys.map(|k| (k >> 32) as u32)
 }
 
 /// Coverage of a picture: 255 where a triangle is, 0 elsewhere.
 #[must_use]
-pub fn coverage<T>(picture: &Picture<T>) -> Plane<u8> {
+pub fn coverage<T>(picture: &Picture<T>) -> Grid<u8> {
     picture.keys.map(|k| if k == EMPTY { 0 } else { 255 })
 }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::Region;
+use super::PixelRect;
 use crate::{
     num::fixed::{SubpixelBits, depth},
     view::{Eye, View, ViewSet},
@@ -47,12 +47,26 @@ impl ScreenVertex {
     }
 }
 
-/// What coverage and depth need of a [`ScreenVertex`], in half the bytes.
+/// The part of a [`ScreenVertex`] that coverage and depth need, in half the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct ScreenPoint {
-    pub(super) x: i32,
-    pub(super) y: i32,
-    pub(super) depth: u32,
+pub(in crate::raster) struct ScreenPoint {
+    /// Column, in sub-pixels.
+    pub(in crate::raster) x: i32,
+    /// Row, in sub-pixels, downwards.
+    pub(in crate::raster) y: i32,
+    /// Depth, in units of 2^-32.
+    pub(in crate::raster) depth: u32,
+}
+
+impl From<ScreenVertex> for ScreenPoint {
+    #[inline]
+    fn from(v: ScreenVertex) -> Self {
+        Self {
+            x: v.x,
+            y: v.y,
+            depth: v.depth,
+        }
+    }
 }
 
 impl ScreenPoint {
@@ -72,7 +86,7 @@ pub struct Projector {
     height: f64,
     bits: SubpixelBits,
     perspective: bool,
-    image: Region,
+    image: PixelRect,
 }
 
 impl Projector {
@@ -86,7 +100,7 @@ impl Projector {
             height: f64::from(height),
             bits: set.subpixel,
             perspective: matches!(view.eye, Eye::Point(_)),
-            image: Region::image(width, height),
+            image: PixelRect::image(width, height),
         }
     }
 
@@ -98,7 +112,7 @@ impl Projector {
 
     /// All samples of the image.
     #[must_use]
-    pub fn image(&self) -> Region {
+    pub fn image(&self) -> PixelRect {
         self.image
     }
 

@@ -1,24 +1,24 @@
 //! From samples to pixels: sums of integers, and their means for eyes.
 
-use super::{Plane, Scene, picture::luma};
+use super::{Grid, Scene, picture::luma};
 use crate::view::{View, ViewSet};
 
 /// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.
 #[must_use]
-pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Plane<u16> {
+pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Grid<u16> {
     sum_samples(&luma(scene, view, set).tones, set.samples)
 }
 
 /// Luma of every pixel as the sum of its `samples` x `samples` samples, from a picture at sample resolution.
 #[must_use]
-pub fn sum_samples(picture: &Plane<u8>, samples: u32) -> Plane<u16> {
+pub fn sum_samples(picture: &Grid<u8>, samples: u32) -> Grid<u16> {
     let [sums] = sum(picture, samples, |v| [v]);
     sums
 }
 
 /// The mean luma of every pixel, rounded to nearest, from the sums of `samples * samples` samples.
 #[must_use]
-pub fn mean_luma(sums: &Plane<u16>, samples: u32) -> Plane<u8> {
+pub fn mean_luma(sums: &Grid<u16>, samples: u32) -> Grid<u8> {
     sums.map(|v| mean(v, samples))
 }
 
@@ -27,9 +27,9 @@ pub fn mean_luma(sums: &Plane<u16>, samples: u32) -> Plane<u8> {
 /// # Panics
 /// Never: the planes that the sums come from have one size.
 #[must_use]
-pub fn mean_rgb(picture: &Plane<[u8; 3]>, samples: u32) -> Plane<[u8; 3]> {
+pub fn mean_rgb(picture: &Grid<[u8; 3]>, samples: u32) -> Grid<[u8; 3]> {
     let [red, green, blue] = sum(picture, samples, |v| v);
-    let mut means = Plane::filled(red.width(), red.height(), [0; 3]);
+    let mut means = Grid::filled(red.width(), red.height(), [0; 3]);
     let sums = red.values().iter().zip(green.values()).zip(blue.values());
     for (pixel, ((&r, &g), &b)) in means.values_mut().iter_mut().zip(sums) {
         *pixel = [r, g, b].map(|v| mean(v, samples));
@@ -44,12 +44,12 @@ fn mean(sum: u16, samples: u32) -> u8 {
 
 /// Sums every channel of `samples` x `samples` blocks; at most 16 samples of 8 bits fit.
 fn sum<T: Copy, const N: usize>(
-    picture: &Plane<T>,
+    picture: &Grid<T>,
     samples: u32,
     channels: impl Fn(T) -> [u8; N],
-) -> [Plane<u16>; N] {
+) -> [Grid<u16>; N] {
     let (width, height) = (picture.width() / samples, picture.height() / samples);
-    let mut sums: [Plane<u16>; N] = std::array::from_fn(|_| Plane::filled(width, height, 0));
+    let mut sums: [Grid<u16>; N] = std::array::from_fn(|_| Grid::filled(width, height, 0));
     for (y, row) in picture
         .values()
         .chunks_exact(picture.width() as usize)

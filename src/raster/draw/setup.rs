@@ -3,7 +3,7 @@
 //! With y downwards and a positive area, `e = dx (py - uy) - dy (px - ux)` is positive inside. Of the points with
 //! `e = 0` those on top and left edges belong to the triangle, so a shared edge is covered exactly once.
 
-use super::{Region, projector::ScreenVertex};
+use super::{PixelRect, projector::ScreenVertex};
 use crate::{num::fixed::SubpixelBits, view::Cull};
 
 /// `e(x, y) = dx * x + dy * y + c` at the centre of pixel (x, y), in sub-pixels squared; inside where `e >= bias`.
@@ -50,7 +50,7 @@ pub struct Setup {
     /// 1/w of the corners.
     pub(super) w_inverse: [f64; 3],
     /// Pixels whose centres the bounding box contains, inside the image.
-    pub(super) bounds: Region,
+    pub(super) bounds: PixelRect,
     /// Which of the given corners each of the three is.
     pub(super) order: [u8; 3],
     /// True where `i64` holds every sum of `e_i * depth_above_i` inside the triangle.
@@ -66,7 +66,7 @@ impl Setup {
         corners: [ScreenVertex; 3],
         bits: SubpixelBits,
         cull: Cull,
-        image: Region,
+        image: PixelRect,
     ) -> Option<Self> {
         let bounds = pixel_bounds(&corners, bits).intersection(image);
         if bounds.is_empty() {
@@ -122,7 +122,7 @@ impl Setup {
 
     /// The pixels the triangle can touch, inside the image.
     #[must_use]
-    pub fn bounds(&self) -> Region {
+    pub fn bounds(&self) -> PixelRect {
         self.bounds
     }
 
@@ -152,12 +152,12 @@ impl Setup {
 
 /// Pixels whose centres lie in the bounding box of the corners.
 #[inline]
-fn pixel_bounds(corners: &[ScreenVertex; 3], bits: SubpixelBits) -> Region {
+fn pixel_bounds(corners: &[ScreenVertex; 3], bits: SubpixelBits) -> PixelRect {
     let [a, b, c] = corners;
     let half = bits.scale() / 2;
     let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
     let last = |v: i32| (v - half) >> bits.bits();
-    Region {
+    PixelRect {
         x0: first(a.x.min(b.x).min(c.x)),
         y0: first(a.y.min(b.y).min(c.y)),
         x1: last(a.x.max(b.x).max(c.x)) + 1,

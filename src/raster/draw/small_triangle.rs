@@ -1,11 +1,11 @@
-//! Small triangles: the same fragments as [`Setup::fragments`](super::Setup::fragments) finds, in 32-bit integers and
+//! SmallTriangle triangles: the same fragments as [`Setup::fragments`](super::Setup::fragments) finds, in 32-bit integers and
 //! without a branch per pixel.
 //!
 //! Edge functions of a triangle whose bounding box is at most 2^15 sub-pixels wide and high (128 pixels with 8
 //! sub-pixel bits) stay below 2^30 inside the box. Pixels of the box are tested by sign and written to a list whose
 //! length grows by the outcome; depths are divided by multiplication with the reciprocal and corrected exactly.
 
-use super::Region;
+use super::{PixelRect, projector::ScreenPoint};
 use crate::{num::fixed::SubpixelBits, view::Cull};
 
 /// Longest side of the bounding box, in sub-pixels.
@@ -17,19 +17,11 @@ const TESTED_WIDTH: usize = 10;
 /// 2^52: added to a double in [0, 2^51), it leaves the nearest integer in the low bits.
 const ROUND: f64 = 4_503_599_627_370_496.0;
 
-/// A corner on the screen: column and row in sub-pixels, and depth.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::raster) struct SmallCorner {
-    pub(in crate::raster) x: i32,
-    pub(in crate::raster) y: i32,
-    pub(in crate::raster) depth: u32,
-}
-
 /// A small triangle ready to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::raster) struct Small {
+pub(in crate::raster) struct SmallTriangle {
     /// Pixels whose centres the bounding box contains, inside the image.
-    pub(in crate::raster) bounds: Region,
+    pub(in crate::raster) bounds: PixelRect,
     /// Edge functions at the first pixel of the bounds, with the bias: inside where none is negative.
     edges: [i32; 3],
     step_x: [i32; 3],
@@ -44,11 +36,11 @@ pub(in crate::raster) struct Small {
     depth_min: u32,
 }
 
-/// What [`Small::fit`] made of three corners.
+/// What [`SmallTriangle::fit`] made of three corners.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) enum Fit {
     /// It fits.
-    Small(Small),
+    Small(SmallTriangle),
     /// It draws nothing: no area after snapping, culled, or no pixel centre in its bounding box.
     Nothing,
     /// It is too large.
@@ -62,13 +54,13 @@ pub(in crate::raster) struct Covered {
     pub(in crate::raster) above: Vec<i64>,
 }
 
-impl Small {
+impl SmallTriangle {
     #[inline]
     pub(in crate::raster) fn fit(
-        [a, mut b, mut c]: [SmallCorner; 3],
+        [a, mut b, mut c]: [ScreenPoint; 3],
         bits: SubpixelBits,
         cull: Cull,
-        image: Region,
+        image: PixelRect,
     ) -> Fit {
         let (x_min, x_max) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
         let (y_min, y_max) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
@@ -232,11 +224,11 @@ impl Small {
 pub(in crate::raster) fn bounds(
     [x_min, y_min, x_max, y_max]: [i32; 4],
     bits: SubpixelBits,
-) -> Region {
+) -> PixelRect {
     let half = bits.scale() / 2;
     let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
     let last = |v: i32| (v - half) >> bits.bits();
-    Region {
+    PixelRect {
         x0: first(x_min),
         y0: first(y_min),
         x1: last(x_max) + 1,
@@ -251,7 +243,7 @@ mod tests {
     use super::*;
     use crate::raster::{ScreenVertex, Setup};
 
-    fn corner() -> impl Strategy<Value = SmallCorner> {
+    fn corner() -> impl Strategy<Value = ScreenPoint> {
         let coordinate = || {
             prop_oneof![
                 -4_000..20_000_i32,
@@ -260,7 +252,7 @@ mod tests {
             ]
         };
         let depth = prop_oneof![any::<u32>(), 0..9_u32, (u32::MAX - 9)..=u32::MAX];
-        (coordinate(), coordinate(), depth).prop_map(|(x, y, depth)| SmallCorner { x, y, depth })
+        (coordinate(), coordinate(), depth).prop_map(|(x, y, depth)| ScreenPoint { x, y, depth })
     }
 
     proptest! {
@@ -273,7 +265,7 @@ mod tests {
             sixteen in any::<bool>(),
         ) {
             let bits = if sixteen { SubpixelBits::Sixteen } else { SubpixelBits::Eight };
-            let image = Region::image(40, 36);
+            let image = PixelRect::image(40, 36);
             let setup = Setup::new(
                 corners.map(|c| ScreenVertex { x: c.x, y: c.y, depth: c.depth, w_inverse: 1.0 }),
                 bits,
@@ -284,9 +276,9 @@ mod tests {
             if let Some(setup) = setup {
                 setup.fragments(image, |x, y, depth| expected.push(((y + 1) as u32 * 64 + (x + 2) as u32, depth)));
             }
-            match Small::fit(corners, bits, cull, image) {
+            match SmallTriangle::fit(corners, bits, cull, image) {
                 Fit::Large => {
-                    let extent = |of: fn(&SmallCorner) -> i32| {
+                    let extent = |of: fn(&ScreenPoint) -> i32| {
                         let all = corners.iter().map(of);
                         all.clone().max().expect("three") - all.min().expect("three")
                     };

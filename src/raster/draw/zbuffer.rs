@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::{Paint, Pieces, Plane, Projector, Region, Scene, projector::ScreenPoint};
+use super::{Drawn, Grid, Paint, PixelRect, Projector, Scene, projector::ScreenPoint};
 use crate::{
     num::fixed::SubpixelBits,
     view::{Cull, View, ViewSet},
@@ -28,7 +28,7 @@ const SMALL: i32 = 8;
 pub struct ZBuffer {
     limit: usize,
     points: Vec<ScreenPoint>,
-    parts: Vec<Plane<u64>>,
+    parts: Vec<Grid<u64>>,
     dropped: u64,
 }
 
@@ -39,7 +39,7 @@ impl ZBuffer {
         Self {
             limit: threads.max(1),
             points: Vec::new(),
-            parts: vec![Plane::filled(0, 0, EMPTY)],
+            parts: vec![Grid::filled(0, 0, EMPTY)],
             dropped: 0,
         }
     }
@@ -51,10 +51,10 @@ impl ZBuffer {
         let (width, height) = (image.x1 as u32, image.y1 as u32);
         let count = scene.triangle_count();
         let parts = count.div_ceil(PART).clamp(1, self.limit);
-        self.parts.resize_with(parts, || Plane::filled(0, 0, EMPTY));
+        self.parts.resize_with(parts, || Grid::filled(0, 0, EMPTY));
         for plane in &mut self.parts {
             if (plane.width(), plane.height()) != (width, height) {
-                *plane = Plane::filled(width, height, EMPTY);
+                *plane = Grid::filled(width, height, EMPTY);
             }
         }
         let positions = scene.positions();
@@ -113,7 +113,7 @@ impl ZBuffer {
     /// `depth << 32 | id` of the nearest triangle at every sample of the last picture, or `u64::MAX` for the
     /// background.
     #[must_use]
-    pub fn keys(&self) -> &Plane<u64> {
+    pub fn keys(&self) -> &Grid<u64> {
         &self.parts[0]
     }
 
@@ -124,7 +124,7 @@ impl ZBuffer {
     }
 
     /// The keys of the last picture, without a copy.
-    pub(super) fn into_keys(mut self) -> Plane<u64> {
+    pub(super) fn into_keys(mut self) -> Grid<u64> {
         self.parts.swap_remove(0)
     }
 }
@@ -136,7 +136,7 @@ fn draw_part(
     projector: &Projector,
     points: &[ScreenPoint],
     range: std::ops::Range<usize>,
-    plane: &mut Plane<u64>,
+    plane: &mut Grid<u64>,
 ) -> u64 {
     let image = projector.image();
     let bits = projector.bits();
@@ -155,7 +155,7 @@ fn draw_part(
         }
         // Samples whose centres the bounding box contains.
         let half = bits.scale() / 2;
-        let hull = Region {
+        let hull = PixelRect {
             x0: (left - half + bits.scale() - 1) >> bits.bits(),
             y0: (top - half + bits.scale() - 1) >> bits.bits(),
             x1: ((right - half) >> bits.bits()) + 1,
@@ -192,7 +192,7 @@ fn draw_small(
     [a, mut b, mut c]: [ScreenPoint; 3],
     bits: SubpixelBits,
     cull: Cull,
-    bounds: Region,
+    bounds: PixelRect,
     id: u32,
     stride: i32,
     keys: &mut [u64],
@@ -273,5 +273,5 @@ fn draw_any(scene: &Scene, view: &View, projector: &Projector, t: usize, keys: &
             keys[at] = keys[at].min(u64::from(depth) << 32 | id);
         });
     });
-    pieces == Pieces::Dropped
+    pieces == Drawn::Dropped
 }

@@ -11,7 +11,7 @@ pub use layers::{LayerEngine, LayerScratch};
 
 use glam::DVec3;
 
-use super::{FaceGeometry, Plane, Scene};
+use super::{FaceGeometry, Grid, Scene};
 use crate::view::{Interpolation, ViewSet};
 
 /// A triangle that a change puts into the pictures.
@@ -38,27 +38,24 @@ pub struct Change<'a> {
     pub normals: &'a [(u32, DVec3)],
 }
 
-/// Which views an evaluation looks at.
+/// The views that an evaluation takes into account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Glance {
-    /// All of them.
+pub enum ViewSubset {
+    /// Every view of the set.
     #[default]
-    Whole,
-    /// One of every so many, from the first. Steps below 2 are the whole.
-    Part(u32),
-    /// Those that such a part leaves out.
-    Rest(u32),
+    All,
+    /// Every n-th view of the set, from the first; 0 and 1 are all of them.
+    EveryNth(u32),
 }
 
-impl Glance {
-    /// Whether it looks at the view with this index in its set.
+impl ViewSubset {
+    /// True where the view with this index in its set belongs to the subset.
     #[inline]
     #[must_use]
-    pub fn sees(self, view: usize) -> bool {
+    pub fn contains(self, view: usize) -> bool {
         match self {
-            Self::Whole => true,
-            Self::Part(step) => step < 2 || view.is_multiple_of(step as usize),
-            Self::Rest(step) => step >= 2 && !view.is_multiple_of(step as usize),
+            Self::All => true,
+            Self::EveryNth(n) => n < 2 || view.is_multiple_of(n as usize),
         }
     }
 }
@@ -74,7 +71,7 @@ pub trait Unrender: Sync + Sized {
 
     /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
     /// [`luma_sums`](super::luma_sums)).
-    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self;
+    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self;
 
     /// Room for one thread of several that evaluate at the same time.
     fn scratch(&self) -> Self::Scratch;
@@ -84,17 +81,17 @@ pub trait Unrender: Sync + Sized {
         self.scratch()
     }
 
-    /// What the change would add to the sum of squared differences of the views of a glance, without making it.
-    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut Self::Scratch) -> i64;
+    /// Returns what the change would add to the sum of squared differences over `views`, without making it.
+    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut Self::Scratch) -> i64;
 
     /// Makes the change and gives what it added to the sum of squared differences.
     fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;
 
     /// The luma of every sample of a view.
-    fn luma(&self, view: usize) -> Plane<u8>;
+    fn luma(&self, view: usize) -> Grid<u8>;
 
     /// The keys (`depth << 32 | id`) of every sample of a view.
-    fn keys(&self, view: usize) -> Plane<u64>;
+    fn keys(&self, view: usize) -> Grid<u64>;
 }
 
 /// `(y0 - new)^2 - (y0 - old)^2`.

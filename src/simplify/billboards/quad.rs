@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     mesh::{ChannelKind, Mesh},
     num::{fixed::SubpixelBits, math},
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{Cull, Eye, Light, Shading, View, ViewSet},
 };
 
@@ -31,7 +31,7 @@ pub struct Quad {
 }
 
 /// Red, green, blue, opacity; the first row is the upper one.
-pub type Texture = Plane<[u8; 4]>;
+pub type Texture = Grid<[u8; 4]>;
 
 impl Quad {
     /// The four corners: lower left, lower right, upper right, upper left.
@@ -56,7 +56,7 @@ impl Quad {
         let picture = self.picture(mesh);
         let [width, height] = self.texels;
         let covered = raster::coverage(&picture);
-        let mut texture = Plane::filled(width, height, [0; 4]);
+        let mut texture = Grid::filled(width, height, [0; 4]);
         for y in 0..height {
             for x in 0..width {
                 let texel = &mut texture.values_mut()[(y * width + x) as usize];
@@ -130,7 +130,7 @@ pub(super) fn project(p: DVec3, origin: DVec3, normal: DVec3, along: DVec3) -> D
 }
 
 /// The mean colour of the covered texels around one that is not.
-fn neighbour(tones: &Plane<[u8; 3]>, covered: &Plane<u8>, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
+fn neighbour(tones: &Grid<[u8; 3]>, covered: &Grid<u8>, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
     let (mut sum, mut count) = ([0_u32; 3], 0);
     for j in y.saturating_sub(1)..=(y + 1).min(covered.height() - 1) {
         for i in x.saturating_sub(1)..=(x + 1).min(covered.width() - 1) {

@@ -3,7 +3,7 @@
 use super::Reference;
 use crate::{
     num::math::sqrt,
-    raster::{self, Change, Glance, Model, Plane, Scene, Unrender},
+    raster::{self, Change, Grid, Model, Scene, Unrender, ViewSubset},
 };
 
 /// The pictures of the original, those of the current mesh, and the sum of their squared luma differences.
@@ -39,7 +39,7 @@ impl<E: Unrender> ImageError<E> {
 
     /// The sum of squared differences between the engine's pictures and those of the original.
     fn sum_from_scratch(&self, reference: &Reference) -> u64 {
-        let view = |(i, y0): (usize, &Plane<u16>)| {
+        let view = |(i, y0): (usize, &Grid<u16>)| {
             let sums = raster::sum_samples(&self.engine.luma(i), reference.set().samples);
             let pairs = y0.values().iter().zip(sums.values());
             pairs
@@ -82,7 +82,7 @@ impl<E: Unrender> ImageError<E> {
 
     /// What the change would add to the sum over the views of a glance; negative where it makes them better.
     #[must_use]
-    pub fn cost(&self, change: &Change<'_>, glance: Glance, scratch: &mut E::Scratch) -> i64 {
+    pub fn cost(&self, change: &Change<'_>, glance: ViewSubset, scratch: &mut E::Scratch) -> i64 {
         self.engine.evaluate(change, glance, scratch)
     }
 

@@ -12,7 +12,7 @@ use crate::{
     mesh::Mesh,
     metric::luma::{SquaredError, ViewErrors, squared_error},
     num::Frame,
-    raster::{Plane, Scene, luma_sums},
+    raster::{Grid, Scene, luma_sums},
     view::{View, ViewsName},
 };
 
@@ -64,7 +64,7 @@ impl HeldOut {
         let scene = Scene::of(&result.enter_frame(self.frame));
         let set = self.reference.set();
         let samples = set.samples * set.samples;
-        let error = |(view, expected): (&View, &Plane<u16>)| {
+        let error = |(view, expected): (&View, &Grid<u16>)| {
             squared_error(expected, &luma_sums(&scene, view, set), samples)
         };
         let views = set.views.par_iter().zip(self.reference.sums());

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
     num::math::sqrt,
-    raster::{Glance, Unrender},
+    raster::{Unrender, ViewSubset},
 };
 
 /// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
@@ -84,7 +84,7 @@ impl<E: Unrender> ImageDriven<E> {
     fn price(
         &self,
         site: &Site<'_>,
-        glance: Glance,
+        glance: ViewSubset,
         scratch: &mut ImageScratch<E::Scratch>,
     ) -> Result<Proposal, Refusal> {
         let proposal = memoryless::propose(site, &self.placement)?;
@@ -92,7 +92,7 @@ impl<E: Unrender> ImageDriven<E> {
         site.patch(proposal.position, patch);
         let seen = self.pictures.cost(site.live, patch, glance, pictures);
         let image = match glance {
-            Glance::Part(every) => {
+            ViewSubset::EveryNth(every) => {
                 let part = self.views.div_ceil(every.max(1) as usize).max(1);
                 let all = (i128::from(seen) * self.views as i128 / part as i128) as i64;
                 // The front of the queue is looked at anyway: better there too early than too late.
@@ -137,7 +137,7 @@ impl<E: Unrender> Method for ImageDriven<E> {
     }
 
     fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.price(site, Glance::Whole, scratch)
+        self.price(site, ViewSubset::All, scratch)
     }
 
     fn glances(&self) -> bool {
@@ -145,7 +145,7 @@ impl<E: Unrender> Method for ImageDriven<E> {
     }
 
     fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.price(site, Glance::Part(self.glance), scratch)
+        self.price(site, ViewSubset::EveryNth(self.glance), scratch)
     }
 
     fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
@@ -153,7 +153,7 @@ impl<E: Unrender> Method for ImageDriven<E> {
         // The proposal's cost may be stale: ask again.
         let cost = self
             .pictures
-            .cost(live, patch, Glance::Whole, &mut self.scratch);
+            .cost(live, patch, ViewSubset::All, &mut self.scratch);
         (self.pictures.error().sum() as i64 + cost) as f64 <= limit
     }
 

@@ -7,7 +7,7 @@ use super::{Limits, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
     num::math,
-    raster::{Glance, Unrender},
+    raster::{Unrender, ViewSubset},
 };
 
 /// Farthest that a parabola is followed along one axis, in steps.
@@ -173,7 +173,7 @@ impl<S> Search<S> {
             };
             let cost = cost.unwrap_or_else(|| {
                 found.evaluations += 1;
-                pictures.cost(live, &self.patch, Glance::Whole, &mut self.pictures)
+                pictures.cost(live, &self.patch, ViewSubset::All, &mut self.pictures)
             });
             if limits.falling && cost > 0 {
                 return;
@@ -202,7 +202,7 @@ impl<S> Search<S> {
         found: &mut Found,
     ) -> Option<i64> {
         let to = self.prepare(live, to, rules)?;
-        let cost = pictures.cost(live, &self.patch, Glance::Whole, &mut self.pictures);
+        let cost = pictures.cost(live, &self.patch, ViewSubset::All, &mut self.pictures);
         found.evaluations += 1;
         if cost < found.better.map_or(0, |(_, best)| best) {
             found.better = Some((to, cost));

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     collapse::{LiveMesh, Patch},
-    raster::{Glance, Unrender},
+    raster::{Unrender, ViewSubset},
     view::Interpolation,
 };
 
@@ -69,7 +69,7 @@ impl<E: Unrender> Pictures<E> {
         &self,
         live: &LiveMesh,
         patch: &Patch,
-        glance: Glance,
+        glance: ViewSubset,
         scratch: &mut PictureScratch<E::Scratch>,
     ) -> i64 {
         let PictureScratch { engine, change } = scratch;

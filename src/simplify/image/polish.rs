@@ -24,7 +24,7 @@ use crate::{
     Progress, Result,
     collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, flip, unfolded},
     metric::Sides,
-    raster::{Glance, Unrender},
+    raster::{Unrender, ViewSubset},
 };
 
 /// How much polishing.
@@ -345,7 +345,7 @@ impl<E: Unrender> Polisher<'_, E> {
             let outcomes = self.in_parallel(&batch, |polisher, search, &e| {
                 let patch = polisher.flip(e, &mut search.patch)?;
                 let (live, pictures) = (&*polisher.live, &polisher.pictures);
-                let cost = pictures.cost(live, patch, Glance::Whole, &mut search.pictures);
+                let cost = pictures.cost(live, patch, ViewSubset::All, &mut search.pictures);
                 let sum = pictures.error().sum() as f64;
                 let limits = polisher.limits;
                 let pays = cost < 0

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     Error, Progress, Result,
-    raster::{Plane, Scene, luma_sums},
+    raster::{Grid, Scene, luma_sums},
     view::ViewSet,
 };
 
@@ -12,7 +12,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Reference {
     set: ViewSet,
-    sums: Vec<Plane<u16>>,
+    sums: Vec<Grid<u16>>,
 }
 
 impl Reference {
@@ -43,7 +43,7 @@ impl Reference {
 
     /// The sum of the lumas of the samples in every pixel, for every view.
     #[must_use]
-    pub fn sums(&self) -> &[Plane<u16>] {
+    pub fn sums(&self) -> &[Grid<u16>] {
         &self.sums
     }
 }

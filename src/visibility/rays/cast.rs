@@ -10,7 +10,7 @@ use super::{
 use crate::{
     Progress, Result,
     mesh::Mesh,
-    raster::Plane,
+    raster::Grid,
     view::{View, ViewSet},
 };
 
@@ -46,11 +46,11 @@ impl RayCaster {
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted).
-    pub fn keys(&self, view: &View, set: &ViewSet, progress: &dyn Progress) -> Result<Plane<u64>> {
+    pub fn keys(&self, view: &View, set: &ViewSet, progress: &dyn Progress) -> Result<Grid<u64>> {
         let rays = Rays::new(view, set, &self.positions);
         let (width, height) = (set.width * set.samples, set.height * set.samples);
         let planes = [0, 1].map(|axis| rays.planes(axis, &self.hierarchy));
-        let mut keys = Plane::filled(width, height, EMPTY);
+        let mut keys = Grid::filled(width, height, EMPTY);
         let chunk = (ROWS * width).max(1) as usize;
         for (i, rows) in keys.values_mut().chunks_mut(chunk).enumerate() {
             if progress.interrupted() {

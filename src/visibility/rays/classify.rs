@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     Error, Progress, Result,
-    raster::Plane,
+    raster::Grid,
     view::{View, ViewSet},
 };
 
@@ -166,7 +166,7 @@ impl Shown {
 #[derive(Clone, Debug)]
 pub struct Classified {
     /// The class of every sample.
-    pub classes: Plane<Class>,
+    pub classes: Grid<Class>,
     /// Every sample that differs, row by row.
     pub witnesses: Vec<Witness>,
     /// True where the view needs no rounding, so that nothing may differ.
@@ -183,7 +183,7 @@ impl RayCaster {
         &self,
         set: &ViewSet,
         index: usize,
-        [raster, cast]: [&Plane<u64>; 2],
+        [raster, cast]: [&Grid<u64>; 2],
         progress: &dyn Progress,
     ) -> Result<Classified> {
         let size = [set.width * set.samples, set.height * set.samples];
@@ -214,7 +214,7 @@ impl RayCaster {
             grid_exact,
         };
         let [width, height] = size.map(|side| side as usize);
-        let mut classes = Plane::filled(size[0], size[1], Class::Background);
+        let mut classes = Grid::filled(size[0], size[1], Class::Background);
         let mut witnesses = Vec::new();
         for first in (0..height).step_by(64) {
             if progress.interrupted() {

@@ -296,7 +296,7 @@ fn a_table_has_a_row_for_every_mesh_and_with_per_view_for_every_view() {
 fn images_are_equal_or_it_is_said_where_they_are_not() {
     let dir = folder();
     let grey = |name: &str, values: &[u8]| {
-        let plane = raster::Plane::new(4, values.len() as u32 / 4, values.to_vec());
+        let plane = raster::Grid::new(4, values.len() as u32 / 4, values.to_vec());
         png::write_grey(&dir.path().join(name), &plane.expect("rows")).expect("writes");
     };
     grey("a.png", &[7; 8]);
@@ -444,7 +444,7 @@ fn the_image_error_is_the_flat_error_from_the_corners_of_a_dodecahedron() {
 }
 
 fn put_image(dir: &TempDir, name: &str, level: u8) {
-    let plane = raster::Plane::filled(4, 4, level);
+    let plane = raster::Grid::filled(4, 4, level);
     png::write_grey(&dir.path().join(name), &plane).expect("writes");
 }
 

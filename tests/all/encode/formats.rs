@@ -12,7 +12,7 @@ use lodmark::{
     },
     io::atomic,
     metric::difference_strip,
-    raster::Plane,
+    raster::Grid,
 };
 use proptest::prelude::*;
 
@@ -27,17 +27,17 @@ fn file_with(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-fn grey() -> impl Strategy<Value = Plane<u8>> {
+fn grey() -> impl Strategy<Value = Grid<u8>> {
     (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
         prop::collection::vec(any::<u8>(), (w * h) as usize)
-            .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+            .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
     })
 }
 
-fn rgb() -> impl Strategy<Value = Plane<[u8; 3]>> {
+fn rgb() -> impl Strategy<Value = Grid<[u8; 3]>> {
     (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
         prop::collection::vec(any::<[u8; 3]>(), (w * h) as usize)
-            .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+            .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
     })
 }
 
@@ -82,7 +82,7 @@ proptest! {
     fn an_array_reads_back_as_it_was_written(
         ids in (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
             prop::collection::vec(any::<u32>(), (w * h) as usize)
-                .prop_map(move |v| Plane::new(w, h, v).expect("w * h values"))
+                .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
         }),
         points in prop::collection::vec(prop::array::uniform3(-1e30_f32..1e30), 0..20),
         levels in grey(),
@@ -139,7 +139,7 @@ proptest! {
         let at = at.index(other.values().len());
         other.values_mut()[at] ^= change;
         prop_assert_ne!(plane_sha256(&other), hash.clone());
-        let row = Plane::new(image.values().len() as u32, 1, image.values().to_vec()).expect("same number");
+        let row = Grid::new(image.values().len() as u32, 1, image.values().to_vec()).expect("same number");
         prop_assert_eq!(plane_sha256(&row) == hash, image.height() == 1);
     }
 }
@@ -150,7 +150,7 @@ fn an_npy_file_has_the_bytes_that_numpy_writes() {
     let path = folder.path().join("a.npy");
     npy::write_plane(
         &path,
-        &Plane::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values"),
+        &Grid::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values"),
     )
     .expect("written");
     let bytes = fs::read(&path).expect("read");
@@ -167,7 +167,7 @@ fn an_npy_file_has_the_bytes_that_numpy_writes() {
 fn an_array_that_claims_more_than_its_file_holds_is_refused() {
     let folder = folder();
     let path = folder.path().join("a.npy");
-    npy::write_plane(&path, &Plane::filled(9, 9, 7_u8)).expect("written");
+    npy::write_plane(&path, &Grid::filled(9, 9, 7_u8)).expect("written");
     let bytes = fs::read(&path).expect("read");
     let mut file = bytes[..10].to_vec();
     let body = format!(
@@ -182,12 +182,12 @@ fn an_array_that_claims_more_than_its_file_holds_is_refused() {
 #[test]
 fn a_hash_is_that_of_size_and_little_endian_values() {
     // sha256(struct.pack("<3I", w, h, bytes per pixel) + array bytes), computed with Python's hashlib.
-    let ids = Plane::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values");
+    let ids = Grid::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values");
     assert_eq!(
         plane_sha256(&ids),
         "bf4cbcc651f9cd94a4ba55a93a0a7d424c0376388d75828feb9848d7596be6ec"
     );
-    let colours = Plane::new(1, 2, vec![[1_u8, 2, 3], [4, 5, 6]]).expect("2 values");
+    let colours = Grid::new(1, 2, vec![[1_u8, 2, 3], [4, 5, 6]]).expect("2 values");
     assert_eq!(
         plane_sha256(&colours),
         "8ce1c03b80056fb6a460ee3e2fe4806a652245300e854ddbfc307c0e4e71b92e"
@@ -198,7 +198,7 @@ fn a_hash_is_that_of_size_and_little_endian_values() {
 fn a_picture_that_claims_a_size_it_cannot_have_is_refused_before_it_is_allocated() {
     let folder = folder();
     let path = folder.path().join("a.png");
-    png::write_grey(&path, &Plane::filled(3, 3, 7)).expect("written");
+    png::write_grey(&path, &Grid::filled(3, 3, 7)).expect("written");
     let bytes = fs::read(&path).expect("read");
     for (side, word) in [(16_384_u32, "hold"), (20_000, ""), (u32::MAX, "")] {
         let mut hostile = bytes.clone();
@@ -214,7 +214,7 @@ fn a_picture_that_claims_a_size_it_cannot_have_is_refused_before_it_is_allocated
     assert_eq!(png::read(&text).expect_err("no PNG").exit_code(), 3);
     let missing = folder.path().join("missing.png");
     assert_eq!(png::read(&missing).expect_err("no file").exit_code(), 5);
-    assert!(png::write_grey(&path, &Plane::filled(0, 3, 7)).is_err());
+    assert!(png::write_grey(&path, &Grid::filled(0, 3, 7)).is_err());
 }
 
 /// The checksum of PNG chunks, bit by bit.
@@ -294,7 +294,7 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
 
 #[test]
 fn a_label_is_drawn_below_its_picture() {
-    let picture = Plane::filled(30, 4, 50_u8);
+    let picture = Grid::filled(30, 4, 50_u8);
     let tiles = [
         Tile {
             picture: &picture,
@@ -352,7 +352,7 @@ fn a_label_is_drawn_below_its_picture() {
 
 #[test]
 fn a_long_label_is_cut_and_does_not_run_into_the_next_picture() {
-    let picture = Plane::filled(20, 3, [9_u8; 3]);
+    let picture = Grid::filled(20, 3, [9_u8; 3]);
     let tile = |label| Tile {
         picture: &picture,
         label,
@@ -364,7 +364,7 @@ fn a_long_label_is_cut_and_does_not_run_into_the_next_picture() {
 
 #[test]
 fn a_sheet_that_no_file_could_hold_is_refused() {
-    let picture = Plane::filled(4096, 1, 0_u8);
+    let picture = Grid::filled(4096, 1, 0_u8);
     let tiles = [Tile {
         picture: &picture,
         label: "",
@@ -390,13 +390,13 @@ fn a_sheet_that_no_file_could_hold_is_refused() {
 
 #[test]
 fn a_difference_strip_shows_expected_actual_and_difference_in_this_order() {
-    let expected = Plane::filled(80, 10, 100_u8);
+    let expected = Grid::filled(80, 10, 100_u8);
     let mut actual = expected.clone();
     actual.values_mut()[0] = 110;
     let strip = difference_strip(&expected, &actual, 4).expect("same size");
     let corners = [0, 1, 2].map(|i| strip.at(8 + 88 * i, 8));
     assert_eq!(corners, [100, 110, 168]);
     assert_eq!(strip.at(8 + 88 * 2 + 1, 8), 128);
-    let smaller = Plane::filled(8, 10, 100_u8);
+    let smaller = Grid::filled(8, 10, 100_u8);
     assert!(difference_strip(&expected, &smaller, 4).is_err());
 }

@@ -14,17 +14,17 @@ use lodmark::{
         luma::{SquaredError, ViewErrors, squared_error},
         silhouette::silhouette_histogram,
     },
-    raster::Plane,
+    raster::Grid,
     view::Eye,
 };
 use proptest::prelude::*;
 
-fn plane<T: Copy>(width: u32, values: &[T]) -> Plane<T> {
-    Plane::new(width, values.len() as u32 / width, values.to_vec()).expect("whole rows")
+fn plane<T: Copy>(width: u32, values: &[T]) -> Grid<T> {
+    Grid::new(width, values.len() as u32 / width, values.to_vec()).expect("whole rows")
 }
 
 /// Two images of one size.
-fn pair() -> impl Strategy<Value = (Plane<u16>, Plane<u16>)> {
+fn pair() -> impl Strategy<Value = (Grid<u16>, Grid<u16>)> {
     (1_u32..9, 1_u32..9).prop_flat_map(|(width, height)| {
         let image = move || {
             prop::collection::vec(0_u16..=4 * 255, (width * height) as usize)
@@ -147,7 +147,7 @@ fn images_that_cannot_be_compared_are_refused() {
         assert!(matches!(compare(&square, &other), Comparison::Sizes { .. }));
         assert!(signed_picture(&square, &other, 1).is_err());
     }
-    let nothing = Plane::filled(0, 0, 0_u8);
+    let nothing = Grid::filled(0, 0, 0_u8);
     assert!(squared_error(&nothing, &nothing, 1).is_err());
     assert!(squared_error(&square, &square, 0).is_err());
     let bright = plane(1, &[256_u16]);
@@ -326,6 +326,6 @@ fn a_red_picture_of_other_sizes_or_scale_0_is_refused() {
     assert_refused(&one, &one, 0);
 }
 
-fn assert_refused(expected: &Plane<u8>, actual: &Plane<u8>, scale: u8) {
+fn assert_refused(expected: &Grid<u8>, actual: &Grid<u8>, scale: u8) {
     assert!(red_picture(expected, actual, scale).is_err());
 }

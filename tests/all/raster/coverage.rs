@@ -2,7 +2,7 @@
 
 use lodmark::{
     num::fixed::SubpixelBits,
-    raster::{Region, ScreenVertex, Setup},
+    raster::{PixelRect, ScreenVertex, Setup},
     view::Cull,
 };
 use proptest::prelude::*;
@@ -23,10 +23,10 @@ fn vertex((x, y): Point, depth: u32) -> ScreenVertex {
 fn fragments(
     corners: [ScreenVertex; 3],
     bits: SubpixelBits,
-    region: Region,
+    region: PixelRect,
 ) -> Vec<(i32, i32, u32)> {
     let mut found = Vec::new();
-    if let Some(setup) = Setup::new(corners, bits, Cull::None, Region::image(64, 64)) {
+    if let Some(setup) = Setup::new(corners, bits, Cull::None, PixelRect::image(64, 64)) {
         setup.fragments(region, |x, y, z| found.push((x, y, z)));
     }
     found
@@ -117,7 +117,7 @@ proptest! {
                 }
             }
         }
-        let found = fragments(screen, bits, Region::image(64, 64));
+        let found = fragments(screen, bits, PixelRect::image(64, 64));
         prop_assert_eq!(&found, &expected);
         for f in &found {
             prop_assert!((depths.iter().min().unwrap()..=depths.iter().max().unwrap()).contains(&&f.2));
@@ -130,11 +130,11 @@ proptest! {
         (x0, y0, w, h) in (0..60_i32, 0..60_i32, 0..64_i32, 0..64_i32),
     ) {
         let screen = [0, 1, 2].map(|i| vertex(corners[i], depths[i]));
-        let all = fragments(screen, bits, Region::image(64, 64));
+        let all = fragments(screen, bits, PixelRect::image(64, 64));
         for order in [[1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
-            prop_assert_eq!(&fragments(order.map(|i: usize| screen[i]), bits, Region::image(64, 64)), &all);
+            prop_assert_eq!(&fragments(order.map(|i: usize| screen[i]), bits, PixelRect::image(64, 64)), &all);
         }
-        let region = Region { x0, y0, x1: (x0 + w).min(64), y1: (y0 + h).min(64) };
+        let region = PixelRect { x0, y0, x1: (x0 + w).min(64), y1: (y0 + h).min(64) };
         let inside: Vec<_> =
             all.into_iter().filter(|f| f.0 >= x0 && f.0 < region.x1 && f.1 >= y0 && f.1 < region.y1).collect();
         prop_assert_eq!(fragments(screen, bits, region), inside);
@@ -149,7 +149,7 @@ proptest! {
         let at = |order: [usize; 3]| {
             let screen = order.map(|i| ScreenVertex { w_inverse: w_inverse[i], ..vertex(corners[i], 0) });
             let values = order.map(|i| attributes[i].map(|x| f64::from(x) / 65_535.0));
-            let setup = Setup::new(screen, bits, Cull::None, Region::image(64, 64))?;
+            let setup = Setup::new(screen, bits, Cull::None, PixelRect::image(64, 64))?;
             let mut found = Vec::new();
             setup.fragments(setup.bounds(), |x, y, _| {
                 found.extend(setup.interpolate(&values, x, y).map(f64::to_bits));
@@ -179,7 +179,7 @@ proptest! {
         }
         let mut counts = vec![0; 64 * 64];
         for tile in &tiles {
-            for (x, y, _) in fragments(tile.map(|p| vertex(scaled(p), 7)), bits, Region::image(64, 64)) {
+            for (x, y, _) in fragments(tile.map(|p| vertex(scaled(p), 7)), bits, PixelRect::image(64, 64)) {
                 counts[y as usize * 64 + x as usize] += 1;
             }
         }
@@ -243,7 +243,7 @@ fn a_triangle_without_area_draws_nothing() {
             fragments(
                 corners.map(|p| vertex(p, 0)),
                 SubpixelBits::Eight,
-                Region::image(64, 64)
+                PixelRect::image(64, 64)
             )
             .is_empty()
         );
@@ -256,7 +256,7 @@ fn culling_follows_the_turn_on_the_screen() {
     let front = [(0, 0), (0, 2560), (2560, 0)].map(|p| vertex(p, 0));
     let back = [front[0], front[2], front[1]];
     let drawn = |corners, cull| {
-        Setup::new(corners, SubpixelBits::Eight, cull, Region::image(64, 64)).is_some()
+        Setup::new(corners, SubpixelBits::Eight, cull, PixelRect::image(64, 64)).is_some()
     };
     assert_eq!(
         [Cull::None, Cull::Back, Cull::Front].map(|c| drawn(front, c)),

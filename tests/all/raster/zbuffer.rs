@@ -4,7 +4,7 @@ use glam::DVec3;
 use lodmark::{
     mesh::generate,
     num::fixed::SubpixelBits,
-    raster::{self, Face, FaceGeometry, Paint, Plane, Projector, Scene, Shader, ZBuffer},
+    raster::{self, Face, FaceGeometry, Grid, Paint, Projector, Scene, Shader, ZBuffer},
     view::{Cull, Interpolation, Projection, Shading, Sphere, View, ViewSet},
 };
 use proptest::prelude::*;
@@ -164,7 +164,7 @@ fn a_reused_buffer_and_any_number_of_parts_give_the_same_picture() {
     let mesh = generate::icosphere(6);
     let scene = Scene::of(&mesh);
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
-    let pictures = |threads: usize| -> Vec<(Plane<u64>, u64)> {
+    let pictures = |threads: usize| -> Vec<(Grid<u64>, u64)> {
         let mut buffer = ZBuffer::new(threads);
         [[90, 70], [16, 16], [90, 70]]
             .iter()

@@ -14,7 +14,7 @@ use lodmark::{
     io,
     mesh::{self, Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{Eye, Projection, Sphere, ViewSet, directions, file, frame_of},
     visibility::{
         self, MeasureOptions,
@@ -78,8 +78,8 @@ fn against_embree(packages: &Path, mesh: &Mesh, set: &ViewSet) -> (Tally, f64) {
     let (mut tally, mut far, mut same) = (Tally::default(), 0_u64, 0_u64);
     for (i, view) in set.views.iter().enumerate() {
         let plane = |what: &str| dir.path().join(format!("view-{i:02}-{what}.npy"));
-        let ids: Plane<u32> = npy::read_plane(&plane("ids")).expect("reads");
-        let depths: Plane<f64> = npy::read_plane(&plane("depth")).expect("reads");
+        let ids: Grid<u32> = npy::read_plane(&plane("ids")).expect("reads");
+        let depths: Grid<f64> = npy::read_plane(&plane("depth")).expect("reads");
         let drawn = raster::keys(&scene, view, set).keys;
         let mut cast = drawn.clone();
         // The distance from the plane of the eye.
@@ -177,7 +177,7 @@ fn embree_sees_through_a_planted_bug() {
     write_mesh(dir.path(), &mesh);
     write_views(dir.path(), &moved);
     oracle(packages, &["cast"], dir.path());
-    let ids: Plane<u32> = npy::read_plane(&dir.path().join("view-00-ids.npy")).expect("reads");
+    let ids: Grid<u32> = npy::read_plane(&dir.path().join("view-00-ids.npy")).expect("reads");
     let drawn = raster::keys(&Scene::of(&mesh), &set.views[0], &set).keys;
     let mut cast = drawn.clone();
     for (key, &id) in cast.values_mut().iter_mut().zip(ids.values()) {
@@ -200,7 +200,7 @@ fn embree_sees_through_a_planted_bug() {
 
 /// V of every triangle as the oracle has left it.
 fn measured(exchange: &Path) -> Vec<f64> {
-    let plane: Plane<f64> = npy::read_plane(&exchange.join("visibility.npy")).expect("reads");
+    let plane: Grid<f64> = npy::read_plane(&exchange.join("visibility.npy")).expect("reads");
     plane.values().to_vec()
 }
 

@@ -5,7 +5,7 @@ use lodmark::{
     Error, Silent,
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{Cull, Projection, View, ViewSet},
     visibility::rays::{Class, RayCaster, TOLERANCE, cap},
 };
@@ -61,7 +61,7 @@ const BUGS: [Bug; 8] = [
 
 /// A rasterizer of its own: every pixel against every triangle in `i128`, with a bug. For meshes in front of the near
 /// plane and inside the guard band, without culling.
-fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Plane<u64> {
+fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<u64> {
     let (width, height) = (f64::from(set.width), f64::from(set.height));
     let bits = set.subpixel.bits();
     // Left out is one that shows: that of the pixel in the middle of those which show any.
@@ -75,7 +75,7 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Plane<u64> {
             .collect();
         ids[ids.len() / 2] as u32 as usize
     });
-    let mut keys = Plane::filled(set.width, set.height, u64::MAX);
+    let mut keys = Grid::filled(set.width, set.height, u64::MAX);
     let screen: Vec<[i128; 3]> = mesh
         .positions()
         .iter()
@@ -261,7 +261,7 @@ fn a_difference_is_named_after_what_is_wrong() {
         Class::Rays,
         "the other way round"
     );
-    let small = Plane::filled(31, 32, u64::MAX);
+    let small = Grid::filled(31, 32, u64::MAX);
     assert!(matches!(
         caster.classify(&set, 0, [&small, &rays], &Silent),
         Err(Error::Usage(_))

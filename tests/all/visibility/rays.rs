@@ -5,7 +5,7 @@ use lodmark::{
     Error, Progress, Silent,
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
-    raster::{self, Plane, Scene},
+    raster::{self, Grid, Scene},
     view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, directions, frame_of},
     visibility::rays::{Class, RayCaster, Tally},
 };
@@ -35,7 +35,7 @@ pub(crate) fn framed(
 }
 
 /// Every view of `draw` against rays.
-pub(crate) fn tally(mesh: &Mesh, set: &ViewSet, draw: impl Fn(&View) -> Plane<u64>) -> Tally {
+pub(crate) fn tally(mesh: &Mesh, set: &ViewSet, draw: impl Fn(&View) -> Grid<u64>) -> Tally {
     let caster = RayCaster::new(mesh);
     let mut tally = Tally::default();
     for (i, view) in set.views.iter().enumerate() {

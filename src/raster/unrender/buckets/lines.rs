@@ -5,7 +5,7 @@
 //! stamps intersect the two unions in linear time. The paper's hash tables are vectors here: what is in a bucket never
 //! depends on their order, and the picture never depends on the order of triangles.
 
-use crate::raster::Region;
+use crate::raster::PixelRect;
 
 /// The buckets of one direction.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ impl Buckets {
     }
 
     /// Enters a triangle with its extent, a region inside the picture; an empty one is not entered.
-    pub(super) fn insert(&mut self, id: u32, extent: Region) {
+    pub(super) fn insert(&mut self, id: u32, extent: PixelRect) {
         if !extent.is_empty() {
             self.columns.insert(id, extent.x0, extent.x1);
             self.rows.insert(id, extent.y0, extent.y1);
@@ -109,7 +109,7 @@ impl Buckets {
     }
 
     /// Takes a triangle out again; `extent` as it was entered.
-    pub(super) fn remove(&mut self, id: u32, extent: Region) {
+    pub(super) fn remove(&mut self, id: u32, extent: PixelRect) {
         if !extent.is_empty() {
             self.columns.remove(id, extent.x0, extent.x1);
             self.rows.remove(id, extent.y0, extent.y1);
@@ -118,7 +118,7 @@ impl Buckets {
 
     /// Puts into `found` every triangle whose extent meets `region` (not empty, inside the picture), but for those that
     /// `stamps` leaves out; in no particular order. One query for every [`Stamps::leave_out`].
-    pub(super) fn query(&self, region: Region, stamps: &mut Stamps, found: &mut Vec<u32>) {
+    pub(super) fn query(&self, region: PixelRect, stamps: &mut Stamps, found: &mut Vec<u32>) {
         found.clear();
         let (left_out, met) = (stamps.now - 1, stamps.now);
         for id in self.columns.union(region.x0, region.x1) {
@@ -138,8 +138,8 @@ mod tests {
 
     use super::*;
 
-    fn extent() -> impl Strategy<Value = Region> {
-        (0..30_i32, 0..20_i32, 0..12_i32, 0..12_i32).prop_map(|(x0, y0, w, h)| Region {
+    fn extent() -> impl Strategy<Value = PixelRect> {
+        (0..30_i32, 0..20_i32, 0..12_i32, 0..12_i32).prop_map(|(x0, y0, w, h)| PixelRect {
             x0,
             y0,
             x1: (x0 + w).min(30),

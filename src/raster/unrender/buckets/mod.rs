@@ -11,10 +11,10 @@ mod view;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use self::view::{PartScratch, ViewPictures};
-use super::{Change, Glance, Model, Unrender};
+use self::view::{BucketView, PartScratch};
+use super::{Change, Model, Unrender, ViewSubset};
 use crate::{
-    raster::{FaceGeometry, Plane},
+    raster::{FaceGeometry, Grid},
     view::ViewSet,
 };
 
@@ -22,7 +22,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct BucketEngine {
     model: Model,
-    views: Vec<ViewPictures>,
+    views: Vec<BucketView>,
 }
 
 /// Buffers of an evaluation, reused.
@@ -50,12 +50,12 @@ impl BucketEngine {
 impl Unrender for BucketEngine {
     type Scratch = BucketScratch;
 
-    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self {
+    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
         let views = set
             .views
             .par_iter()
             .zip(reference)
-            .map(|(view, reference)| ViewPictures::new(&model, view, set, reference))
+            .map(|(view, reference)| BucketView::new(&model, view, set, reference))
             .collect();
         Self { model, views }
     }
@@ -79,13 +79,13 @@ impl Unrender for BucketEngine {
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut BucketScratch) -> i64 {
+    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut BucketScratch) -> i64 {
         self.begin(change, scratch);
         let geometry = &scratch.geometry;
-        let views = self.views.iter().enumerate();
-        let views = views.filter(|&(i, _)| glance.sees(i));
-        let views: Vec<&ViewPictures> = views.map(|(_, view)| view).collect();
-        in_parts(views, &mut scratch.parts, &|view: &ViewPictures, part| {
+        let chosen = self.views.iter().enumerate();
+        let chosen = chosen.filter(|&(i, _)| views.contains(i));
+        let chosen: Vec<&BucketView> = chosen.map(|(_, view)| view).collect();
+        in_parts(chosen, &mut scratch.parts, &|view: &BucketView, part| {
             let region = view.redraw(&self.model, change, geometry, part);
             view.difference(region, part)
         })
@@ -94,26 +94,22 @@ impl Unrender for BucketEngine {
     fn commit(&mut self, change: &Change<'_>, scratch: &mut BucketScratch) -> i64 {
         self.begin(change, scratch);
         let (model, geometry) = (&self.model, &scratch.geometry);
-        let views: Vec<&mut ViewPictures> = self.views.iter_mut().collect();
-        let sum = in_parts(
-            views,
-            &mut scratch.parts,
-            &|view: &mut ViewPictures, part| {
-                let region = view.redraw(model, change, geometry, part);
-                let sum = view.difference(region, part);
-                view.apply(change, geometry, region, part);
-                sum
-            },
-        );
+        let views: Vec<&mut BucketView> = self.views.iter_mut().collect();
+        let sum = in_parts(views, &mut scratch.parts, &|view: &mut BucketView, part| {
+            let region = view.redraw(model, change, geometry, part);
+            let sum = view.difference(region, part);
+            view.apply(change, geometry, region, part);
+            sum
+        });
         self.model.apply(change);
         sum
     }
 
-    fn luma(&self, view: usize) -> Plane<u8> {
+    fn luma(&self, view: usize) -> Grid<u8> {
         self.views[view].luma.clone()
     }
 
-    fn keys(&self, view: usize) -> Plane<u64> {
+    fn keys(&self, view: usize) -> Grid<u64> {
         self.views[view].keys.clone()
     }
 }

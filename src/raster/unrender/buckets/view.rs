@@ -9,7 +9,7 @@ use super::{
 use crate::{
     num::fixed::level,
     raster::{
-        Face, FaceGeometry, Paint, Plane, Projector, Region, ScreenVertex, Setup, Shader,
+        Face, FaceGeometry, Grid, Paint, PixelRect, Projector, ScreenVertex, Setup, Shader,
         draw::EMPTY,
     },
     view::{Interpolation, View, ViewSet},
@@ -17,7 +17,7 @@ use crate::{
 
 /// One view: its pictures and what is needed to change them.
 #[derive(Clone, Debug)]
-pub(super) struct ViewPictures {
+pub(super) struct BucketView {
     view: View,
     projector: Projector,
     shader: Shader,
@@ -28,12 +28,12 @@ pub(super) struct ViewPictures {
     /// Gouraud shading: the intensity of every vertex. Flat shading: empty.
     intensities: Vec<f64>,
     /// The pixels every triangle can touch, as it is entered in the buckets.
-    extents: Vec<Region>,
+    extents: Vec<PixelRect>,
     buckets: Buckets,
-    pub(super) keys: Plane<u64>,
-    pub(super) luma: Plane<u8>,
+    pub(super) keys: Grid<u64>,
+    pub(super) luma: Grid<u8>,
     /// What the picture is compared with: the luma sums of every pixel.
-    reference: Plane<u16>,
+    reference: Grid<u16>,
     background: u8,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct PartScratch {
     moved: Vec<ScreenVertex>,
     shaded: Vec<f64>,
     setups: Vec<(u32, Setup, Paint)>,
-    added_extents: Vec<Region>,
+    added_extents: Vec<PixelRect>,
     keys: Vec<u64>,
     luma: Vec<u8>,
 }
@@ -60,8 +60,8 @@ impl PartScratch {
     }
 }
 
-impl ViewPictures {
-    pub(super) fn new(model: &Model, view: &View, set: &ViewSet, reference: Plane<u16>) -> Self {
+impl BucketView {
+    pub(super) fn new(model: &Model, view: &View, set: &ViewSet, reference: Grid<u16>) -> Self {
         let projector = Projector::new(view, set);
         let shader = Shader::new(view);
         let image = projector.image();
@@ -86,10 +86,10 @@ impl ViewPictures {
             } else {
                 Vec::new()
             },
-            extents: vec![Region::EMPTY; model.corners.len()],
+            extents: vec![PixelRect::EMPTY; model.corners.len()],
             buckets: Buckets::new(width, height),
-            keys: Plane::filled(width, height, EMPTY),
-            luma: Plane::filled(width, height, set.background),
+            keys: Grid::filled(width, height, EMPTY),
+            luma: Grid::filled(width, height, set.background),
             reference,
             background: set.background,
             projector,
@@ -106,7 +106,7 @@ impl ViewPictures {
             pictures.luma.values().to_vec(),
         );
         for id in 0..model.corners.len() as u32 {
-            let mut extent = Region::EMPTY;
+            let mut extent = PixelRect::EMPTY;
             pictures
                 .face(model, id)
                 .pieces(&pictures.projector, view.cull, |setup, paint| {
@@ -192,7 +192,7 @@ impl ViewPictures {
         change: &Change<'_>,
         geometry: &[(FaceGeometry, [DVec3; 3])],
         scratch: &mut PartScratch,
-    ) -> Region {
+    ) -> PixelRect {
         scratch.moved.clear();
         scratch
             .moved
@@ -206,7 +206,7 @@ impl ViewPictures {
                     .map(|&(v, n)| self.shader.intensity(model.position_after(change, v), n)),
             );
         }
-        let mut region = Region::EMPTY;
+        let mut region = PixelRect::EMPTY;
         for &id in change.removed {
             region = region.union(self.extents[id as usize]);
         }
@@ -220,7 +220,7 @@ impl ViewPictures {
                 geometry,
                 (&scratch.moved, &scratch.shaded),
             );
-            let mut extent = Region::EMPTY;
+            let mut extent = PixelRect::EMPTY;
             face.pieces(&self.projector, self.view.cull, |setup, paint| {
                 extent = extent.union(setup.bounds());
                 scratch.setups.push((added.id, *setup, *paint));
@@ -235,7 +235,7 @@ impl ViewPictures {
         }
         // Pixels that show no removed triangle keep what they show, unless an added one is nearer.
         scratch.stamps.leave_out(change.removed);
-        let mut uncovered = Region::EMPTY;
+        let mut uncovered = PixelRect::EMPTY;
         for y in region.y0..region.y1 {
             let start = y as usize * self.luma.width() as usize;
             let row = start + region.x0 as usize..start + region.x1 as usize;
@@ -246,7 +246,7 @@ impl ViewPictures {
                 if key != EMPTY && scratch.stamps.is_left_out(key as u32) {
                     scratch.keys.push(EMPTY);
                     scratch.luma.push(self.background);
-                    let pixel = Region {
+                    let pixel = PixelRect {
                         x0: x,
                         y0: y,
                         x1: x + 1,
@@ -291,7 +291,7 @@ impl ViewPictures {
     }
 
     /// What the scratch would add to the squared differences of the pixels that the region meets: each is summed anew.
-    pub(super) fn difference(&self, region: Region, scratch: &PartScratch) -> i64 {
+    pub(super) fn difference(&self, region: PixelRect, scratch: &PartScratch) -> i64 {
         if region.is_empty() {
             return 0;
         }
@@ -325,17 +325,17 @@ impl ViewPictures {
         total
     }
 
-    /// Makes the change that [`ViewPictures::redraw`] has drawn.
+    /// Makes the change that [`BucketView::redraw`] has drawn.
     pub(super) fn apply(
         &mut self,
         change: &Change<'_>,
         geometry: &[(FaceGeometry, [DVec3; 3])],
-        region: Region,
+        region: PixelRect,
         scratch: &PartScratch,
     ) {
         for &id in change.removed {
             self.buckets.remove(id, self.extents[id as usize]);
-            self.extents[id as usize] = Region::EMPTY;
+            self.extents[id as usize] = PixelRect::EMPTY;
         }
         for ((added, extent), geometry) in change
             .added
@@ -374,7 +374,7 @@ fn draw(
     setup: &Setup,
     paint: &Paint,
     id: u32,
-    [within, region]: [Region; 2],
+    [within, region]: [PixelRect; 2],
     keys: &mut [u64],
     luma: &mut [u8],
 ) {

@@ -51,13 +51,13 @@ pub(super) enum Fate {
     Stays,
     /// It leaves its place: all of its fragments go.
     Goes,
-    /// It stays where it is, but looks different: the index in [`Prepared::restyled`].
+    /// It stays where it is, but looks different: the index in [`ChangeSet::restyled`].
     Restyled(usize),
 }
 
 /// A change, sorted out.
 #[derive(Clone, Debug)]
-pub(super) struct Prepared {
+pub(super) struct ChangeSet {
     /// Triangles that disappear or change their shape.
     pub(super) gone: Vec<u32>,
     /// Triangles that appear or have changed their shape.
@@ -74,7 +74,7 @@ pub(super) struct Prepared {
     fates: Vec<u16>,
 }
 
-impl Prepared {
+impl ChangeSet {
     /// Buffers for a model with so many triangles.
     pub(super) fn new(triangles: usize) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Prepared {
         }
     }
 
-    /// By triangle: 1 where it goes. For tight loops; see [`Prepared::fate`].
+    /// By triangle: 1 where it goes. For tight loops; see [`ChangeSet::fate`].
     #[inline]
     pub(super) fn fates(&self) -> &[u16] {
         &self.fates

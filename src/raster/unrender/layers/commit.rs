@@ -2,55 +2,58 @@
 
 use super::{
     fragment_lists::TILE,
-    probe::Look,
-    view::{Around, LayerView},
+    probe::ViewDelta,
+    view::{LayerView, ProbeContext},
 };
 use crate::{
     raster::{
         Face, Projector, ScreenVertex,
-        draw::small_triangle::{Fit, Small, SmallCorner},
+        draw::{
+            projector::ScreenPoint,
+            small_triangle::{Fit, SmallTriangle},
+        },
     },
     view::Cull,
 };
 
 impl LayerView {
     /// Makes the change that the look has seen.
-    pub(super) fn apply(&mut self, around: &Around<'_>, look: &mut Look) {
-        look.swaps.clear();
-        look.enter(self.region(around));
+    pub(super) fn apply(&mut self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
+        delta.swaps.clear();
+        delta.enter(self.region(context));
         // (1) The picture.
-        for i in 0..look.count {
-            let at = look.touched[i];
-            let sample = look.sample(at, self.width);
-            let (x, y) = look.place(at);
-            self.recolor(x, y, look.tones[i]);
-            let before = self.stacks.shown()[sample].id();
-            look.swaps.push((before, look.slots[at as usize] as u32));
+        for i in 0..delta.count {
+            let at = delta.touched[i];
+            let sample = delta.sample(at, self.width);
+            let (x, y) = delta.place(at);
+            self.recolor(x, y, delta.tones[i]);
+            let before = self.lists.shown()[sample].id();
+            delta.swaps.push((before, delta.slots[at as usize] as u32));
         }
-        for i in 0..look.restyled.len() {
-            let ([x, y], tone) = look.restyled[i];
+        for i in 0..delta.restyled.len() {
+            let ([x, y], tone) = delta.restyled[i];
             self.recolor(i32::from(x), i32::from(y), tone);
         }
         // (2) The layers.
         let (cull, width, columns) = (self.view.cull, self.width, self.tile_columns);
-        for &id in &around.prepared.gone {
-            let face = self.flat_face(around, id);
-            let stacks = &mut self.stacks;
-            look.fragments(&face, &self.projector, cull, width, |sample, _, _| {
-                stacks.remove(sample, id);
+        for &id in &context.changes.gone {
+            let face = self.flat_face(context, id);
+            let lists = &mut self.lists;
+            delta.fragments(&face, &self.projector, cull, width, |sample, _, _| {
+                lists.remove(sample, id);
             });
         }
-        for after in &around.prepared.fresh {
-            let face = self.flat_face_after(around, after);
-            let stacks = &mut self.stacks;
-            look.fragments(
+        for after in &context.changes.fresh {
+            let face = self.flat_face_after(context, after);
+            let lists = &mut self.lists;
+            delta.fragments(
                 &face,
                 &self.projector,
                 cull,
                 width,
                 |sample, (x, y), depth| {
                     let tile = (y >> TILE) as usize * columns + (x >> TILE) as usize;
-                    stacks.insert(sample, tile, u64::from(depth) << 32 | u64::from(after.id));
+                    lists.insert(sample, tile, u64::from(depth) << 32 | u64::from(after.id));
                 },
             );
             if self.plain {
@@ -58,10 +61,9 @@ impl LayerView {
             }
         }
         // (3) What is derived from them.
-        if look.count > 0 {
+        if delta.count > 0 {
             let image = self.projector.image();
-            self.deepest
-                .measure(look.region, image, self.stacks.shown());
+            self.hi_z.measure(delta.region, image, self.lists.shown());
         }
     }
 
@@ -69,15 +71,15 @@ impl LayerView {
         let sample = y as usize * self.width + x as usize;
         if self.samples > 0 {
             let pixel = self.pixel(x, y);
-            let old = self.stacks.shown()[sample].luma();
+            let old = self.lists.shown()[sample].luma();
             let sum = &mut self.sums[pixel][1];
             *sum = *sum - u16::from(old) + u16::from(tone);
         }
-        self.stacks.set_luma(sample, tone);
+        self.lists.set_luma(sample, tone);
     }
 }
 
-impl Look {
+impl ViewDelta {
     /// Calls `visit(sample, (x, y), depth)` for every fragment of a face in the region.
     #[inline]
     pub(super) fn fragments(
@@ -89,12 +91,8 @@ impl Look {
         mut visit: impl FnMut(usize, (i32, i32), u32),
     ) {
         if !face.screen.iter().any(ScreenVertex::is_outside) {
-            let corners = face.screen.map(|v| SmallCorner {
-                x: v.x,
-                y: v.y,
-                depth: v.depth,
-            });
-            match Small::fit(corners, projector.bits(), cull, projector.image()) {
+            let corners = face.screen.map(ScreenPoint::from);
+            match SmallTriangle::fit(corners, projector.bits(), cull, projector.image()) {
                 Fit::Nothing => return,
                 Fit::Small(small) => {
                     let origin = (self.region.x0, self.region.y0);

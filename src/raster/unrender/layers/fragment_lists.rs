@@ -81,7 +81,7 @@ fn capacity(class: usize) -> usize {
 
 /// The fragments of a picture.
 #[derive(Clone, Debug)]
-pub(super) struct Stacks {
+pub(super) struct FragmentLists {
     nothing: u64,
     shown: Vec<Shown>,
     /// Depth of what is shown.
@@ -94,8 +94,8 @@ pub(super) struct Stacks {
     bounds: Vec<u64>,
 }
 
-impl Stacks {
-    /// Stacks without a fragment, in so many tiles. `nothing` is what an empty sample shows, above every key;
+impl FragmentLists {
+    /// FragmentLists without a fragment, in so many tiles. `nothing` is what an empty sample shows, above every key;
     /// `reference` may be empty.
     pub(super) fn new(
         samples: usize,
@@ -255,28 +255,28 @@ mod tests {
             gone in proptest::collection::vec(0..6_u32, 0..4),
         ) {
             let nothing = u64::from(u32::MAX) << 32 | 99;
-            let mut stacks = Stacks::new(3, 9, &[1, 2, 3], 1, nothing);
-            stacks.set_luma(0, 7);
+            let mut lists = FragmentLists::new(3, 9, &[1, 2, 3], 1, nothing);
+            lists.set_luma(0, 7);
             let mut expected = vec![Vec::<u64>::new(); 3];
             for (at, id, depth, insert) in steps {
                 let key = u64::from(depth) << 47 | u64::from(id);
                 if insert {
-                    stacks.insert(at, 0, key);
+                    lists.insert(at, 0, key);
                     expected[at].push(key);
                 } else {
-                    stacks.remove(at, id);
+                    lists.remove(at, id);
                     expected[at].retain(|&k| k as u32 != id);
                 }
                 for (at, keys) in expected.iter_mut().enumerate() {
                     keys.sort_unstable();
                     let nearest = keys.first().copied().unwrap_or(nothing);
-                    prop_assert_eq!(stacks.nearest(at), nearest);
-                    let shown = stacks.shown()[at];
+                    prop_assert_eq!(lists.nearest(at), nearest);
+                    let shown = lists.shown()[at];
                     prop_assert_eq!(shown.least_key(), nearest >> 48 << 48);
                     prop_assert_eq!([shown.luma(), shown.reference()], [[7, 9, 9][at], 1 + at as u8]);
                     let below = keys.iter().skip(1).find(|&&k| !gone.contains(&(k as u32)));
-                    prop_assert_eq!(stacks.below(at, |id| gone.contains(&id)), below.copied().unwrap_or(nothing));
-                    prop_assert!(keys.iter().skip(1).all(|&k| k >= stacks.bound(0)));
+                    prop_assert_eq!(lists.below(at, |id| gone.contains(&id)), below.copied().unwrap_or(nothing));
+                    prop_assert!(keys.iter().skip(1).all(|&k| k >= lists.bound(0)));
                 }
             }
         }

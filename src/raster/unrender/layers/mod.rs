@@ -17,13 +17,13 @@ mod view;
 use rayon::prelude::*;
 
 use self::{
-    change_set::Prepared,
-    probe::Look,
-    projected::{Boxes, Lanes},
-    view::{Around, LayerView},
+    change_set::ChangeSet,
+    probe::ViewDelta,
+    projected::{Projected, ScreenBoxes},
+    view::{LayerView, ProbeContext},
 };
-use super::{Change, Glance, Model, Unrender};
-use crate::{raster::Plane, view::ViewSet};
+use super::{Change, Model, Unrender, ViewSubset};
+use crate::{raster::Grid, view::ViewSet};
 
 /// Views that a part has bits for.
 const MOST_VIEWS: usize = 64;
@@ -47,7 +47,7 @@ pub struct LayerEngine {
 /// Buffers of an evaluation, reused.
 #[derive(Clone, Debug)]
 pub struct LayerScratch {
-    prepared: Prepared,
+    changes: ChangeSet,
     parts: Vec<PartScratch>,
     /// Nothing else runs beside: parts may be given to other threads.
     lone: bool,
@@ -55,10 +55,10 @@ pub struct LayerScratch {
 
 #[derive(Clone, Debug)]
 struct PartScratch {
-    moved: Lanes,
-    fresh: Boxes,
-    all: Boxes,
-    look: Look,
+    moved: Projected,
+    fresh: ScreenBoxes,
+    all: ScreenBoxes,
+    delta: ViewDelta,
 }
 
 /// Some of the views.
@@ -67,7 +67,7 @@ struct Part {
     views: Vec<LayerView>,
     /// Where they are in the set.
     indices: Vec<usize>,
-    lanes: Lanes,
+    lanes: Projected,
     /// Gouraud shading: intensities by vertex and view.
     intensities: Vec<f64>,
     /// Samples that show a triangle, by triangle and view.
@@ -82,7 +82,7 @@ impl Part {
         let count = views.len();
         let shaded = views.iter().any(LayerView::is_shaded);
         let mut part = Self {
-            lanes: Lanes::new(count, model.positions.len(), shaded),
+            lanes: Projected::new(count, model.positions.len(), shaded),
             intensities: Vec::new(),
             counts: vec![0; model.corners.len() * count],
             seen: vec![0; model.corners.len()],
@@ -103,7 +103,7 @@ impl Part {
                 .collect();
         }
         for (lane, view) in part.views.iter().enumerate() {
-            for shown in view.stacks.shown() {
+            for shown in view.lists.shown() {
                 let id = shown.id() as usize;
                 if id < part.seen.len() {
                     part.counts[id * count + lane] += 1;
@@ -119,7 +119,7 @@ impl Part {
     fn begin(
         &self,
         change: &Change<'_>,
-        prepared: &Prepared,
+        changes: &ChangeSet,
         lanes: u64,
         scratch: &mut PartScratch,
     ) -> u64 {
@@ -133,17 +133,17 @@ impl Part {
             }
         }
         fresh.clear(self.views.len());
-        for &v in &prepared.rim {
+        for &v in &changes.rim {
             fresh.add(&self.lanes, v as usize);
         }
-        for &entry in &prepared.moved {
+        for &entry in &changes.moved {
             fresh.add(moved, entry as usize);
         }
         all.copy(fresh);
-        for &v in &prepared.inside {
+        for &v in &changes.inside {
             all.add(&self.lanes, v as usize);
         }
-        let seen = prepared.gone.iter().map(|&id| self.seen[id as usize]);
+        let seen = changes.gone.iter().map(|&id| self.seen[id as usize]);
         seen.fold(0, |all, bits| all | bits)
     }
 
@@ -151,20 +151,20 @@ impl Part {
         &self,
         model: &Model,
         change: &Change<'_>,
-        prepared: &Prepared,
+        changes: &ChangeSet,
         lanes: u64,
         scratch: &mut PartScratch,
     ) -> i64 {
         if lanes == 0 {
             return 0;
         }
-        let uncovers = self.begin(change, prepared, lanes, scratch);
+        let uncovers = self.begin(change, changes, lanes, scratch);
         let mut sum = 0;
         for lane in each(lanes) {
-            let around = Around {
+            let context = ProbeContext {
                 model,
                 change,
-                prepared,
+                changes,
                 lanes: &self.lanes,
                 moved: &scratch.moved,
                 intensities: &self.intensities,
@@ -175,7 +175,7 @@ impl Part {
                 lane,
                 lane_count: self.views.len(),
             };
-            sum += self.views[lane].look(&around, &mut scratch.look);
+            sum += self.views[lane].probe(&context, &mut scratch.delta);
         }
         sum
     }
@@ -184,17 +184,17 @@ impl Part {
         &mut self,
         model: &Model,
         change: &Change<'_>,
-        prepared: &Prepared,
+        changes: &ChangeSet,
         scratch: &mut PartScratch,
     ) -> i64 {
-        let uncovers = self.begin(change, prepared, all(self.views.len()), scratch);
+        let uncovers = self.begin(change, changes, all(self.views.len()), scratch);
         let lane_count = self.views.len();
         let mut sum = 0;
         for (lane, view) in self.views.iter_mut().enumerate() {
-            let around = Around {
+            let context = ProbeContext {
                 model,
                 change,
-                prepared,
+                changes,
                 lanes: &self.lanes,
                 moved: &scratch.moved,
                 intensities: &self.intensities,
@@ -205,9 +205,9 @@ impl Part {
                 lane,
                 lane_count,
             };
-            sum += view.look(&around, &mut scratch.look);
-            view.apply(&around, &mut scratch.look);
-            for &(before, after) in &scratch.look.swaps {
+            sum += view.probe(&context, &mut scratch.delta);
+            view.apply(&context, &mut scratch.delta);
+            for &(before, after) in &scratch.delta.swaps {
                 for (id, step) in [(before, u32::MAX), (after, 1)] {
                     let Some(seen) = self.seen.get_mut(id as usize) else {
                         continue; // the background
@@ -261,15 +261,15 @@ impl LayerEngine {
         view.expect("a view of the set")
     }
 
-    fn plane<T: Copy>(&self, values: Vec<T>) -> Plane<T> {
-        Plane::new(self.size[0], self.size[1], values).expect("a value for every sample")
+    fn plane<T: Copy>(&self, values: Vec<T>) -> Grid<T> {
+        Grid::new(self.size[0], self.size[1], values).expect("a value for every sample")
     }
 }
 
 impl Unrender for LayerEngine {
     type Scratch = LayerScratch;
 
-    fn new(model: Model, set: &ViewSet, reference: Vec<Plane<u16>>) -> Self {
+    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
         let colored = !model.colors.is_empty();
         let count = set.views.len();
         let threads = rayon::current_num_threads().min(PARTS);
@@ -304,17 +304,17 @@ impl Unrender for LayerEngine {
 
     fn scratch(&self) -> LayerScratch {
         let part = |part: &Part| PartScratch {
-            moved: Lanes::new(
+            moved: Projected::new(
                 part.views.len(),
                 1,
                 part.views.iter().any(LayerView::is_shaded),
             ),
-            fresh: Boxes::default(),
-            all: Boxes::default(),
-            look: Look::default(),
+            fresh: ScreenBoxes::default(),
+            all: ScreenBoxes::default(),
+            delta: ViewDelta::default(),
         };
         LayerScratch {
-            prepared: Prepared::new(self.model.corners.len()),
+            changes: ChangeSet::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
             lone: false,
         }
@@ -327,14 +327,14 @@ impl Unrender for LayerEngine {
         }
     }
 
-    fn evaluate(&self, change: &Change<'_>, glance: Glance, scratch: &mut LayerScratch) -> i64 {
-        scratch.prepared.fill(&self.model, change, self.flat);
-        let (model, prepared) = (&self.model, &scratch.prepared);
+    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut LayerScratch) -> i64 {
+        scratch.changes.fill(&self.model, change, self.flat);
+        let (model, changes) = (&self.model, &scratch.changes);
         let work = |(part, scratch): (&Part, &mut PartScratch)| {
             let lanes = each(all(part.views.len()));
-            let lanes = lanes.filter(|lane| glance.sees(part.indices[*lane]));
+            let lanes = lanes.filter(|lane| views.contains(part.indices[*lane]));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
-            part.evaluate(model, change, prepared, lanes, scratch)
+            part.evaluate(model, change, changes, lanes, scratch)
         };
         if scratch.lone && self.parts.len() > 1 {
             let pairs = self.parts.par_iter().zip(&mut scratch.parts);
@@ -346,10 +346,10 @@ impl Unrender for LayerEngine {
     }
 
     fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
-        scratch.prepared.fill(&self.model, change, self.flat);
-        let (model, prepared) = (&self.model, &scratch.prepared);
+        scratch.changes.fill(&self.model, change, self.flat);
+        let (model, changes) = (&self.model, &scratch.changes);
         let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
-            part.commit(model, change, prepared, scratch)
+            part.commit(model, change, changes, scratch)
         };
         let sum = if self.parts.len() > 1 {
             let pairs = self.parts.par_iter_mut().zip(&mut scratch.parts);
@@ -362,11 +362,11 @@ impl Unrender for LayerEngine {
         sum
     }
 
-    fn luma(&self, view: usize) -> Plane<u8> {
+    fn luma(&self, view: usize) -> Grid<u8> {
         self.plane(self.view(view).luma())
     }
 
-    fn keys(&self, view: usize) -> Plane<u64> {
+    fn keys(&self, view: usize) -> Grid<u64> {
         self.plane(self.view(view).keys())
     }
 }

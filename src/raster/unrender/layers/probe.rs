@@ -9,11 +9,11 @@ use super::{
     super::difference,
     change_set::After,
     projected::clipped_pixels,
-    view::{Around, LayerView},
+    view::{LayerView, ProbeContext},
 };
 use crate::raster::{
-    Face, Paint, Region, ScreenVertex, Setup,
-    draw::small_triangle::{Covered, Fit, Small},
+    Face, Paint, PixelRect, ScreenVertex, Setup,
+    draw::small_triangle::{Covered, Fit, SmallTriangle},
 };
 
 /// A fresh triangle, or a piece of one, that won a pixel.
@@ -24,11 +24,11 @@ struct Piece {
     shaded: Option<(Setup, Paint)>,
 }
 
-/// Buffers of a look, and what it found.
+/// Buffers of a delta, and what it found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Look {
+pub(super) struct ViewDelta {
     /// The pixels that may change, and the logarithm of the stride of the buffers below.
-    pub(super) region: Region,
+    pub(super) region: PixelRect,
     pub(super) shift: u32,
     /// The buffers below hold the region; not where nothing came near enough to be seen.
     entered: bool,
@@ -59,98 +59,97 @@ pub(super) struct Look {
 
 impl LayerView {
     /// What the change does to the squared differences of this view.
-    pub(super) fn look(&self, around: &Around<'_>, look: &mut Look) -> i64 {
-        look.count = 0;
-        look.restyled.clear();
-        let uncovers = around.uncovers >> around.lane & 1 != 0;
-        let restyles = self.restyles(around);
-        let hidden = !uncovers && self.is_hidden(around);
+    pub(super) fn probe(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) -> i64 {
+        delta.count = 0;
+        delta.restyled.clear();
+        let uncovers = context.uncovers >> context.lane & 1 != 0;
+        let restyles = self.restyles(context);
+        let hidden = !uncovers && self.is_hidden(context);
         if hidden && !restyles {
             return 0;
         }
-        look.pieces.clear();
-        look.intensities.clear();
+        delta.pieces.clear();
+        delta.intensities.clear();
         if self.gouraud {
-            let normals = around.change.normals.iter();
-            look.intensities.extend(normals.map(|&(v, n)| {
-                let position = around.model.position_after(around.change, v);
+            let normals = context.change.normals.iter();
+            delta.intensities.extend(normals.map(|&(v, n)| {
+                let position = context.model.position_after(context.change, v);
                 self.shader.intensity(position, n)
             }));
         }
-        look.entered = false;
+        delta.entered = false;
         if !hidden {
             if uncovers {
-                self.enter(around, look);
+                self.enter(context, delta);
             }
-            self.draw_fresh(around, look);
-            self.tone(around, look);
+            self.draw_fresh(context, delta);
+            self.tone(context, delta);
         }
         if restyles {
-            self.restyle(around, look);
+            self.restyle(context, delta);
         }
-        self.sum(look)
+        self.sum(delta)
     }
 
     /// The pixels that the triangles can touch that go and come.
     #[inline]
-    pub(super) fn region(&self, around: &Around<'_>) -> Region {
-        match around.all.pixels(around.lane, self.projector.bits()) {
+    pub(super) fn region(&self, context: &ProbeContext<'_>) -> PixelRect {
+        match context.all.pixels(context.lane, self.projector.bits()) {
             Some(pixels) => pixels.intersection(self.projector.image()),
-            None => self.clipped_region(around),
+            None => self.clipped_region(context),
         }
     }
 
     /// The pixels that the triangles can touch that go and come, where some are clipped.
     #[cold]
-    fn clipped_region(&self, around: &Around<'_>) -> Region {
-        let mut region = Region::EMPTY;
+    fn clipped_region(&self, context: &ProbeContext<'_>) -> PixelRect {
+        let mut region = PixelRect::EMPTY;
         let mut add = |face: &Face| {
             region = region.union(clipped_pixels(face, &self.projector, self.view.cull));
         };
-        for &id in &around.prepared.gone {
-            add(&self.flat_face(around, id));
+        for &id in &context.changes.gone {
+            add(&self.flat_face(context, id));
         }
-        for face in &around.prepared.fresh {
-            add(&self.flat_face_after(around, face));
+        for face in &context.changes.fresh {
+            add(&self.flat_face_after(context, face));
         }
         region
     }
 
     /// True where a triangle that stays in its place and looks different is seen.
-    fn restyles(&self, around: &Around<'_>) -> bool {
-        let restyled = &around.prepared.restyled;
+    fn restyles(&self, context: &ProbeContext<'_>) -> bool {
+        let restyled = &context.changes.restyled;
         !self.plain
             && restyled
                 .iter()
-                .any(|f| around.seen[f.id as usize] >> around.lane & 1 != 0)
+                .any(|f| context.seen[f.id as usize] >> context.lane & 1 != 0)
     }
 
     /// True where the fresh triangles are behind everything that is seen around their box.
     #[inline]
-    fn is_hidden(&self, around: &Around<'_>) -> bool {
-        let Some(pixels) = around.fresh.pixels(around.lane, self.projector.bits()) else {
+    fn is_hidden(&self, context: &ProbeContext<'_>) -> bool {
+        let Some(pixels) = context.fresh.pixels(context.lane, self.projector.bits()) else {
             return false;
         };
         let pixels = pixels.intersection(self.projector.image());
-        self.deepest
-            .hides(pixels, around.fresh.nearest(around.lane))
+        self.hi_z.hides(pixels, context.fresh.nearest(context.lane))
     }
 
     /// Fills the slots of the region with lower bounds, and finds the pixels that show a triangle that goes.
-    fn enter(&self, around: &Around<'_>, look: &mut Look) {
-        look.begin(self.region(around));
-        look.entered = true;
-        let uncovers = around.uncovers >> around.lane & 1 != 0;
-        let region = look.region;
+    fn enter(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
+        delta.begin(self.region(context));
+        delta.entered = true;
+        let uncovers = context.uncovers >> context.lane & 1 != 0;
+        let region = delta.region;
         let width = region.width();
-        let fates = around.prepared.fates();
+        let fates = context.changes.fates();
         let mut count = 0;
         for (row, y) in (region.y0..region.y1).enumerate() {
             let from = y as usize * self.width + region.x0 as usize;
-            let start = row << look.shift;
-            let slots = &mut look.slots[start..start + width];
-            look.who[start..start + width].fill(0);
-            let shown = &self.stacks.shown()[from..from + width];
+            let start = row << delta.shift;
+            let slots = &mut delta.slots[start..start + width];
+            delta.who[start..start + width].fill(0);
+            let shown = &self.lists.shown()[from..from + width];
             if !uncovers {
                 for (slot, shown) in slots.iter_mut().zip(shown) {
                     *slot = shown.least_key();
@@ -159,75 +158,81 @@ impl LayerView {
             }
             for (x, (slot, shown)) in slots.iter_mut().zip(shown).enumerate() {
                 *slot = shown.least_key();
-                look.touched[count] = (start + x) as u32;
+                delta.touched[count] = (start + x) as u32;
                 count += usize::from(fates[shown.id() as usize] == 1);
             }
         }
-        for &at in &look.touched[..count] {
-            let (x, y) = look.place(at);
-            look.slots[at as usize] = self.stacks.bound(self.tile(x, y));
-            look.who[at as usize] = 1;
+        for &at in &delta.touched[..count] {
+            let (x, y) = delta.place(at);
+            delta.slots[at as usize] = self.lists.bound(self.tile(x, y));
+            delta.who[at as usize] = 1;
         }
-        look.count = count;
+        delta.count = count;
     }
 
-    /// Whether a fresh key is seen at a pixel, where [`Look::may_win`] has not ruled it out.
+    /// Whether a fresh key is seen at a pixel, where [`ViewDelta::may_win`] has not ruled it out.
     #[inline]
-    fn wins(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
-        key < look.slots[at as usize] || self.wins_exactly(around, look, at, key)
+    fn wins(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32, key: u64) -> bool {
+        key < delta.slots[at as usize] || self.wins_exactly(context, delta, at, key)
     }
 
     /// Whether a fresh key that is not below the slot of a pixel is seen there all the same.
-    fn wins_exactly(&self, around: &Around<'_>, look: &Look, at: u32, key: u64) -> bool {
-        match look.who[at as usize] {
-            0 => key < self.stacks.nearest(look.sample(at, self.width)),
-            1 => key < self.behind(around, look, at),
+    fn wins_exactly(
+        &self,
+        context: &ProbeContext<'_>,
+        delta: &ViewDelta,
+        at: u32,
+        key: u64,
+    ) -> bool {
+        match delta.who[at as usize] {
+            0 => key < self.lists.nearest(delta.sample(at, self.width)),
+            1 => key < self.behind(context, delta, at),
             _ => false,
         }
     }
 
     /// The key that a pixel shows when the triangles that go are gone and nothing comes.
     #[inline]
-    fn behind(&self, around: &Around<'_>, look: &Look, at: u32) -> u64 {
-        let sample = look.sample(at, self.width);
-        self.stacks.below(sample, |id| around.prepared.goes(id))
+    fn behind(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32) -> u64 {
+        let sample = delta.sample(at, self.width);
+        self.lists.below(sample, |id| context.changes.goes(id))
     }
 
     /// Lets the fresh triangles compete for the pixels they cover.
-    fn draw_fresh(&self, around: &Around<'_>, look: &mut Look) {
+    fn draw_fresh(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
-        let uncovers = around.uncovers >> around.lane & 1 != 0;
-        for face in &around.prepared.fresh {
+        let uncovers = context.uncovers >> context.lane & 1 != 0;
+        for face in &context.changes.fresh {
             let corners = face.corners.map(|c| match c.moved() {
-                Some(entry) => around.moved.corner(entry, around.lane),
-                None => around.lanes.corner(c.vertex as usize, around.lane),
+                Some(entry) => context.moved.corner(entry, context.lane),
+                None => context.lanes.corner(c.vertex as usize, context.lane),
             });
             if let [Some(a), Some(b), Some(c)] = corners {
-                match Small::fit([a, b, c], bits, self.view.cull, image) {
+                match SmallTriangle::fit([a, b, c], bits, self.view.cull, image) {
                     Fit::Nothing => continue,
                     Fit::Small(small) => {
-                        if !uncovers && self.deepest.hides(small.bounds, small.nearest()) {
+                        if !uncovers && self.hi_z.hides(small.bounds, small.nearest()) {
                             continue;
                         }
-                        if !look.entered {
-                            self.enter(around, look);
+                        if !delta.entered {
+                            self.enter(context, delta);
                         }
-                        if self.draw_small(around, &small, face.id, look) {
-                            let piece = self.piece(around, face, look);
-                            look.pieces.push(piece);
+                        if self.draw_small(context, &small, face.id, delta) {
+                            let piece = self.piece(context, face, delta);
+                            delta.pieces.push(piece);
                         }
                         continue;
                     }
                     Fit::Large => {}
                 }
             }
-            if !look.entered {
-                self.enter(around, look);
+            if !delta.entered {
+                self.enter(context, delta);
             }
-            let whole = self.face_after(around, face, &look.intensities);
+            let whole = self.face_after(context, face, &delta.intensities);
             whole.pieces(&self.projector, self.view.cull, |setup, paint| {
-                if self.draw_large(around, setup, face.id, look) {
-                    look.pieces.push(Piece {
+                if self.draw_large(context, setup, face.id, delta) {
+                    delta.pieces.push(Piece {
                         level: match paint {
                             Paint::Flat(level) => *level,
                             _ => 0,
@@ -241,16 +246,22 @@ impl LayerView {
 
     /// Lets a small triangle compete under the next number; true where it won a pixel.
     #[inline]
-    fn draw_small(&self, around: &Around<'_>, small: &Small, id: u32, look: &mut Look) -> bool {
-        let origin = (look.region.x0, look.region.y0);
-        let covered = small.list(origin, look.shift, &mut look.covered);
-        let number = look.pieces.len() as u32 + 2;
+    fn draw_small(
+        &self,
+        context: &ProbeContext<'_>,
+        small: &SmallTriangle,
+        id: u32,
+        delta: &mut ViewDelta,
+    ) -> bool {
+        let origin = (delta.region.x0, delta.region.y0);
+        let covered = small.list(origin, delta.shift, &mut delta.covered);
+        let number = delta.pieces.len() as u32 + 2;
         let mut any = false;
         for j in 0..covered {
-            let (at, above) = (look.covered.at[j], look.covered.above[j]);
+            let (at, above) = (delta.covered.at[j], delta.covered.above[j]);
             let key = u64::from(small.depth(above)) << 32 | u64::from(id);
-            if look.may_win(at, key) && self.wins(around, look, at, key) {
-                look.win(at, key, number);
+            if delta.may_win(at, key) && self.wins(context, delta, at, key) {
+                delta.win(at, key, number);
                 any = true;
             }
         }
@@ -258,15 +269,21 @@ impl LayerView {
     }
 
     /// Lets a triangle of any size compete under the next number; true where it won a pixel.
-    fn draw_large(&self, around: &Around<'_>, setup: &Setup, id: u32, look: &mut Look) -> bool {
-        let region = look.region;
-        let number = look.pieces.len() as u32 + 2;
+    fn draw_large(
+        &self,
+        context: &ProbeContext<'_>,
+        setup: &Setup,
+        id: u32,
+        delta: &mut ViewDelta,
+    ) -> bool {
+        let region = delta.region;
+        let number = delta.pieces.len() as u32 + 2;
         let mut any = false;
         setup.fragments(region, |x, y, depth| {
-            let at = ((y - region.y0) as u32) << look.shift | (x - region.x0) as u32;
+            let at = ((y - region.y0) as u32) << delta.shift | (x - region.x0) as u32;
             let key = u64::from(depth) << 32 | u64::from(id);
-            if look.may_win(at, key) && self.wins(around, look, at, key) {
-                look.win(at, key, number);
+            if delta.may_win(at, key) && self.wins(context, delta, at, key) {
+                delta.win(at, key, number);
                 any = true;
             }
         });
@@ -275,14 +292,14 @@ impl LayerView {
 
     /// What a small fresh triangle looks like.
     #[inline]
-    fn piece(&self, around: &Around<'_>, face: &After, look: &Look) -> Piece {
+    fn piece(&self, context: &ProbeContext<'_>, face: &After, delta: &ViewDelta) -> Piece {
         if self.plain {
             return Piece {
                 level: self.level(&face.geometry),
                 shaded: None,
             };
         }
-        let face = self.face_after(around, face, &look.intensities);
+        let face = self.face_after(context, face, &delta.intensities);
         let setup = Setup::new(
             face.screen,
             self.projector.bits(),
@@ -296,43 +313,43 @@ impl LayerView {
     }
 
     /// The luma of every touched pixel.
-    fn tone(&self, around: &Around<'_>, look: &mut Look) {
-        look.tones.clear();
-        for j in 0..look.count {
-            let at = look.touched[j];
-            let tone = match look.who[at as usize].checked_sub(2) {
+    fn tone(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
+        delta.tones.clear();
+        for j in 0..delta.count {
+            let at = delta.touched[j];
+            let tone = match delta.who[at as usize].checked_sub(2) {
                 Some(piece) => {
-                    let piece = &look.pieces[piece as usize];
+                    let piece = &delta.pieces[piece as usize];
                     match &piece.shaded {
                         None => piece.level,
                         Some((setup, paint)) => {
-                            let (x, y) = look.place(at);
+                            let (x, y) = delta.place(at);
                             paint.luma(setup, x, y)
                         }
                     }
                 }
                 None => {
-                    let key = self.behind(around, look, at);
-                    look.slots[at as usize] = key;
+                    let key = self.behind(context, delta, at);
+                    delta.slots[at as usize] = key;
                     if self.plain {
                         self.levels[key as u32 as usize]
                     } else {
-                        self.luma_behind(around, key as u32, look.place(at), &look.intensities)
+                        self.luma_behind(context, key as u32, delta.place(at), &delta.intensities)
                     }
                 }
             };
-            look.tones.push(tone);
+            delta.tones.push(tone);
         }
     }
 
     /// The luma of pixels that keep their triangle, which looks different.
-    fn restyle(&self, around: &Around<'_>, look: &mut Look) {
+    fn restyle(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
-        for after in &around.prepared.restyled {
-            if around.seen[after.id as usize] >> around.lane & 1 == 0 {
+        for after in &context.changes.restyled {
+            if context.seen[after.id as usize] >> context.lane & 1 == 0 {
                 continue;
             }
-            let face = self.face_after(around, after, &look.intensities);
+            let face = self.face_after(context, after, &delta.intensities);
             let whole = match face.screen.iter().any(ScreenVertex::is_outside) {
                 true => None,
                 false => Setup::new(face.screen, bits, self.view.cull, image),
@@ -344,46 +361,48 @@ impl LayerView {
             for y in bounds.y0..bounds.y1 {
                 let start = y as usize * self.width;
                 let row = start + bounds.x0 as usize..start + bounds.x1 as usize;
-                let shown = &self.stacks.shown()[row];
-                look.columns.resize(shown.len().max(look.columns.len()), 0);
+                let shown = &self.lists.shown()[row];
+                delta
+                    .columns
+                    .resize(shown.len().max(delta.columns.len()), 0);
                 let mut count = 0;
                 for (x, shown) in (bounds.x0..).zip(shown) {
-                    look.columns[count] = x;
+                    delta.columns[count] = x;
                     count += usize::from(shown.id() == after.id);
                 }
                 for i in 0..count {
-                    let x = look.columns[i];
-                    if look.entered && look.is_touched(x, y) {
+                    let x = delta.columns[i];
+                    if delta.entered && delta.is_touched(x, y) {
                         continue;
                     }
                     let luma = match &whole {
                         Some(setup) => face.paint.luma(setup, x, y),
                         None => self.luma_at(&face, (x, y)),
                     };
-                    look.restyled.push(([x as u16, y as u16], luma));
+                    delta.restyled.push(([x as u16, y as u16], luma));
                 }
             }
         }
     }
 
     /// What the luma of the touched and restyled samples add to the squared differences.
-    fn sum(&self, look: &mut Look) -> i64 {
-        let shown = self.stacks.shown();
+    fn sum(&self, delta: &mut ViewDelta) -> i64 {
+        let shown = self.lists.shown();
         let mut total = 0;
         if self.samples == 0 {
             let add = |sample: usize, tone: u8| {
                 let [y0, now] = [shown[sample].reference(), shown[sample].luma()];
                 difference(u16::from(y0), u16::from(now), u16::from(tone))
             };
-            for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
-                total += add(look.sample(at, self.width), tone);
+            for (&at, &tone) in delta.touched[..delta.count].iter().zip(&delta.tones) {
+                total += add(delta.sample(at, self.width), tone);
             }
-            for &([x, y], tone) in &look.restyled {
+            for &([x, y], tone) in &delta.restyled {
                 total += add(usize::from(y) * self.width + usize::from(x), tone);
             }
             return total;
         }
-        let Look { deltas, pixels, .. } = look;
+        let ViewDelta { deltas, pixels, .. } = delta;
         let (mut deltas, mut pixels) = (std::mem::take(deltas), std::mem::take(pixels));
         deltas.resize(self.sums.len(), 0);
         pixels.clear();
@@ -395,11 +414,11 @@ impl LayerView {
             }
             deltas[pixel] += i32::from(tone) - i32::from(shown[sample].luma());
         };
-        for (&at, &tone) in look.touched[..look.count].iter().zip(&look.tones) {
-            let (x, y) = look.place(at);
+        for (&at, &tone) in delta.touched[..delta.count].iter().zip(&delta.tones) {
+            let (x, y) = delta.place(at);
             add(x, y, tone);
         }
-        for &([x, y], tone) in &look.restyled {
+        for &([x, y], tone) in &delta.restyled {
             add(i32::from(x), i32::from(y), tone);
         }
         for &pixel in &pixels {
@@ -407,14 +426,14 @@ impl LayerView {
             let [y0, now] = self.sums[pixel as usize];
             total += difference(y0, now, (i32::from(now) + delta) as u16);
         }
-        (look.deltas, look.pixels) = (deltas, pixels);
+        (delta.deltas, delta.pixels) = (deltas, pixels);
         total
     }
 }
 
-impl Look {
+impl ViewDelta {
     /// Makes room for a region; the buffers still hold the last one.
-    fn begin(&mut self, region: Region) {
+    fn begin(&mut self, region: PixelRect) {
         self.enter(region);
         let size = region.height() << self.shift;
         if self.slots.len() < size + 1 {
@@ -425,7 +444,7 @@ impl Look {
     }
 
     /// Makes indices those of a region.
-    pub(super) fn enter(&mut self, region: Region) {
+    pub(super) fn enter(&mut self, region: PixelRect) {
         self.region = region;
         self.shift = region.width().next_power_of_two().trailing_zeros();
     }

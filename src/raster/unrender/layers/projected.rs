@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::{
     num::fixed::SubpixelBits,
     raster::{
-        Face, Projector, Region, ScreenVertex,
-        draw::small_triangle::{self, SmallCorner},
+        Face, PixelRect, Projector, ScreenVertex,
+        draw::{projector::ScreenPoint, small_triangle},
     },
 };
 
@@ -14,14 +14,14 @@ use crate::{
 ///
 /// Depths are stored as signed integers, 2^31 less, because processors compare those in lanes.
 #[derive(Clone, Debug)]
-pub(super) struct Lanes {
+pub(super) struct Projected {
     lanes: usize,
     places: Vec<i32>,
     /// 1/w by vertex and view; empty where nothing is interpolated.
     w_inverse: Vec<f64>,
 }
 
-impl Lanes {
+impl Projected {
     /// No vertex yet, on so many screens; `shaded` where attributes are interpolated on one of them.
     pub(super) fn new(lanes: usize, vertices: usize, shaded: bool) -> Self {
         Self {
@@ -87,10 +87,10 @@ impl Lanes {
 
     /// A vertex on one screen; `None` where triangles with it need clipping.
     #[inline]
-    pub(super) fn corner(&self, vertex: usize, lane: usize) -> Option<SmallCorner> {
+    pub(super) fn corner(&self, vertex: usize, lane: usize) -> Option<ScreenPoint> {
         let start = vertex * 3 * self.lanes + lane;
         let x = self.places[start];
-        (x != ScreenVertex::OUTSIDE.x).then(|| SmallCorner {
+        (x != ScreenVertex::OUTSIDE.x).then(|| ScreenPoint {
             x,
             y: self.places[start + self.lanes],
             depth: self.places[start + 2 * self.lanes] as u32 ^ 1 << 31,
@@ -102,7 +102,7 @@ impl Lanes {
     pub(super) fn screen(&self, vertex: usize, lane: usize) -> ScreenVertex {
         match self.corner(vertex, lane) {
             None => ScreenVertex::OUTSIDE,
-            Some(SmallCorner { x, y, depth }) => ScreenVertex {
+            Some(ScreenPoint { x, y, depth }) => ScreenVertex {
                 x,
                 y,
                 depth,
@@ -117,7 +117,7 @@ impl Lanes {
 
 /// Bounding boxes in every view: columns, rows, and the least depth.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Boxes {
+pub(super) struct ScreenBoxes {
     x_min: Vec<i32>,
     x_max: Vec<i32>,
     y_min: Vec<i32>,
@@ -125,7 +125,7 @@ pub(super) struct Boxes {
     depth_min: Vec<i32>,
 }
 
-impl Boxes {
+impl ScreenBoxes {
     /// Empty boxes in so many views.
     pub(super) fn clear(&mut self, lanes: usize) {
         let most = [&mut self.x_min, &mut self.y_min, &mut self.depth_min];
@@ -141,7 +141,7 @@ impl Boxes {
 
     /// Adds a vertex.
     #[inline]
-    pub(super) fn add(&mut self, lanes: &Lanes, vertex: usize) {
+    pub(super) fn add(&mut self, lanes: &Projected, vertex: usize) {
         let n = lanes.lanes;
         let run = &lanes.places[vertex * 3 * n..][..3 * n];
         let (x, rest) = run.split_at(n);
@@ -179,13 +179,13 @@ impl Boxes {
 
     /// The pixels whose centres the box of a view contains, anywhere; `None` where a vertex of it is outside.
     #[inline]
-    pub(super) fn pixels(&self, lane: usize, bits: SubpixelBits) -> Option<Region> {
+    pub(super) fn pixels(&self, lane: usize, bits: SubpixelBits) -> Option<PixelRect> {
         let x_min = self.x_min[lane];
         if x_min == ScreenVertex::OUTSIDE.x {
             return None;
         }
         if x_min == i32::MAX {
-            return Some(Region::EMPTY);
+            return Some(PixelRect::EMPTY);
         }
         let extent = [x_min, self.y_min[lane], self.x_max[lane], self.y_max[lane]];
         Some(small_triangle::bounds(extent, bits))
@@ -204,8 +204,8 @@ pub(super) fn clipped_pixels(
     face: &Face,
     projector: &Projector,
     cull: crate::view::Cull,
-) -> Region {
-    let mut extent = Region::EMPTY;
+) -> PixelRect {
+    let mut extent = PixelRect::EMPTY;
     face.pieces(projector, cull, |setup, _| {
         extent = extent.union(setup.bounds())
     });

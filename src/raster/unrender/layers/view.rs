@@ -4,31 +4,31 @@ use glam::DVec3;
 
 use super::{
     super::{Change, Model},
-    change_set::{After, Corner, Fate, Prepared},
-    fragment_lists::{Stacks, TILE},
-    hi_z::Deepest,
-    projected::{Boxes, Lanes},
+    change_set::{After, ChangeSet, Corner, Fate},
+    fragment_lists::{FragmentLists, TILE},
+    hi_z::HiZ,
+    projected::{Projected, ScreenBoxes},
 };
 use crate::{
     num::fixed::level,
-    raster::{Face, FaceGeometry, Paint, Projector, Region, ScreenVertex, Shader, draw::EMPTY},
+    raster::{Face, FaceGeometry, Paint, PixelRect, Projector, ScreenVertex, Shader, draw::EMPTY},
     view::{Interpolation, View, ViewSet},
 };
 
 /// What a look in any view of a part needs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around<'a> {
+pub(super) struct ProbeContext<'a> {
     pub(super) model: &'a Model,
     pub(super) change: &'a Change<'a>,
-    pub(super) prepared: &'a Prepared,
+    pub(super) changes: &'a ChangeSet,
     /// Vertices as they are, and those that move as they will be.
-    pub(super) lanes: &'a Lanes,
-    pub(super) moved: &'a Lanes,
+    pub(super) lanes: &'a Projected,
+    pub(super) moved: &'a Projected,
     /// Intensities by vertex and view; empty without Gouraud shading.
     pub(super) intensities: &'a [f64],
-    /// Boxes of the fresh triangles, and of all that go and come.
-    pub(super) fresh: &'a Boxes,
-    pub(super) all: &'a Boxes,
+    /// ScreenBoxes of the fresh triangles, and of all that go and come.
+    pub(super) fresh: &'a ScreenBoxes,
+    pub(super) all: &'a ScreenBoxes,
     /// Views, one bit for each, in which a triangle that goes is seen.
     pub(super) uncovers: u64,
     /// Where a triangle is seen, by triangle.
@@ -49,10 +49,10 @@ pub(super) struct LayerView {
     pub(super) plain: bool,
     pub(super) gouraud: bool,
     pub(super) background: u8,
-    pub(super) stacks: Stacks,
+    pub(super) lists: FragmentLists,
     /// Where pixels have several samples, their sums: of the reference and now.
     pub(super) sums: Vec<[u16; 2]>,
-    pub(super) deepest: Deepest,
+    pub(super) hi_z: HiZ,
     pub(super) width: usize,
     pub(super) tile_columns: usize,
     /// Logarithm of the samples in a row of a pixel.
@@ -86,9 +86,9 @@ impl LayerView {
             plain: !gouraud && !colored,
             gouraud,
             background: set.background,
-            stacks: Stacks::new(width * height, set.background, &single, tiles, nothing),
+            lists: FragmentLists::new(width * height, set.background, &single, tiles, nothing),
             sums: Vec::new(),
-            deepest: Deepest::new(image),
+            hi_z: HiZ::new(image),
             width,
             tile_columns,
             samples: set.samples.trailing_zeros(),
@@ -106,12 +106,10 @@ impl LayerView {
             pictures.sums = reference.iter().map(|&y0| [y0, 0]).collect();
             for at in 0..width * height {
                 let pixel = pictures.pixel((at % width) as i32, (at / width) as i32);
-                pictures.sums[pixel][1] += u16::from(pictures.stacks.shown()[at].luma());
+                pictures.sums[pixel][1] += u16::from(pictures.lists.shown()[at].luma());
             }
         }
-        pictures
-            .deepest
-            .measure(image, image, pictures.stacks.shown());
+        pictures.hi_z.measure(image, image, pictures.lists.shown());
         pictures
     }
 
@@ -119,7 +117,7 @@ impl LayerView {
     fn draw(&mut self, model: &Model) {
         let positions = model.positions.iter();
         let screen: Vec<ScreenVertex> = positions.map(|&p| self.projector.screen(p)).collect();
-        let mut stacks = std::mem::replace(&mut self.stacks, Stacks::new(0, 0, &[], 0, 0));
+        let mut lists = std::mem::replace(&mut self.lists, FragmentLists::new(0, 0, &[], 0, 0));
         for id in 0..model.corners.len() as u32 {
             let corners = model.corners[id as usize];
             let intensities = corners.map(|v| self.vertex_intensity(model, v));
@@ -132,25 +130,25 @@ impl LayerView {
                 setup.fragments(self.projector.image(), |x, y, depth| {
                     let at = y as usize * self.width + x as usize;
                     let key = u64::from(depth) << 32 | u64::from(id);
-                    if key < stacks.nearest(at) {
-                        stacks.set_luma(at, paint.luma(setup, x, y));
+                    if key < lists.nearest(at) {
+                        lists.set_luma(at, paint.luma(setup, x, y));
                     }
-                    stacks.insert(at, self.tile(x, y), key);
+                    lists.insert(at, self.tile(x, y), key);
                 });
             });
         }
-        self.stacks = stacks;
+        self.lists = lists;
     }
 
     /// The luma of every sample.
     pub(super) fn luma(&self) -> Vec<u8> {
-        self.stacks.shown().iter().map(|s| s.luma()).collect()
+        self.lists.shown().iter().map(|s| s.luma()).collect()
     }
 
     /// The keys of the picture as everyone else writes them.
     pub(super) fn keys(&self) -> Vec<u64> {
-        let nothing = self.stacks.nothing();
-        let keys = (0..self.stacks.shown().len()).map(|at| self.stacks.nearest(at));
+        let nothing = self.lists.nothing();
+        let keys = (0..self.lists.shown().len()).map(|at| self.lists.nearest(at));
         keys.map(|k| if k == nothing { EMPTY } else { k }).collect()
     }
 
@@ -215,27 +213,32 @@ impl LayerView {
     }
 
     /// A triangle of the model on this screen.
-    pub(super) fn face_now(&self, around: &Around<'_>, id: u32) -> Face {
-        let model = around.model;
+    pub(super) fn face_now(&self, context: &ProbeContext<'_>, id: u32) -> Face {
+        let model = context.model;
         let corners = model.corners[id as usize];
         let intensities = corners.map(|v| {
-            let at = v as usize * around.lane_count + around.lane;
-            around.intensities.get(at).copied().unwrap_or(0.0)
+            let at = v as usize * context.lane_count + context.lane;
+            context.intensities.get(at).copied().unwrap_or(0.0)
         });
         Face {
             positions: corners.map(|v| model.positions[v as usize]),
-            screen: corners.map(|v| around.lanes.screen(v as usize, around.lane)),
+            screen: corners.map(|v| context.lanes.screen(v as usize, context.lane)),
             paint: self.paint_now(model, id, intensities),
         }
     }
 
     /// A triangle after the change on this screen; `shaded` are the new intensities.
-    pub(super) fn face_after(&self, around: &Around<'_>, face: &After, shaded: &[f64]) -> Face {
-        let colors = (!around.model.colors.is_empty()).then_some(&face.colors);
+    pub(super) fn face_after(
+        &self,
+        context: &ProbeContext<'_>,
+        face: &After,
+        shaded: &[f64],
+    ) -> Face {
+        let colors = (!context.model.colors.is_empty()).then_some(&face.colors);
         let paint = if self.gouraud {
             let intensity = |c: Corner| match c.shaded() {
                 Some(entry) => shaded[entry],
-                None => around.intensities[c.vertex as usize * around.lane_count + around.lane],
+                None => context.intensities[c.vertex as usize * context.lane_count + context.lane],
             };
             Paint::gouraud(face.corners.map(intensity), colors)
         } else {
@@ -245,30 +248,30 @@ impl LayerView {
         Face {
             positions: face.positions,
             screen: face.corners.map(|c| match c.moved() {
-                Some(entry) => around.moved.screen(entry, around.lane),
-                None => around.lanes.screen(c.vertex as usize, around.lane),
+                Some(entry) => context.moved.screen(entry, context.lane),
+                None => context.lanes.screen(c.vertex as usize, context.lane),
             }),
             paint,
         }
     }
 
     /// A triangle of the model on this screen, whatever it looks like.
-    pub(super) fn flat_face(&self, around: &Around<'_>, id: u32) -> Face {
-        let corners = around.model.corners[id as usize];
+    pub(super) fn flat_face(&self, context: &ProbeContext<'_>, id: u32) -> Face {
+        let corners = context.model.corners[id as usize];
         Face {
-            positions: corners.map(|v| around.model.positions[v as usize]),
-            screen: corners.map(|v| around.lanes.screen(v as usize, around.lane)),
+            positions: corners.map(|v| context.model.positions[v as usize]),
+            screen: corners.map(|v| context.lanes.screen(v as usize, context.lane)),
             paint: Paint::Flat(0),
         }
     }
 
     /// A triangle after the change on this screen, whatever it looks like.
-    pub(super) fn flat_face_after(&self, around: &Around<'_>, face: &After) -> Face {
+    pub(super) fn flat_face_after(&self, context: &ProbeContext<'_>, face: &After) -> Face {
         Face {
             positions: face.positions,
             screen: face.corners.map(|c| match c.moved() {
-                Some(entry) => around.moved.screen(entry, around.lane),
-                None => around.lanes.screen(c.vertex as usize, around.lane),
+                Some(entry) => context.moved.screen(entry, context.lane),
+                None => context.lanes.screen(c.vertex as usize, context.lane),
             }),
             paint: Paint::Flat(0),
         }
@@ -277,26 +280,26 @@ impl LayerView {
     /// The luma of a triangle at a pixel that it covers; of the background where `id` is no triangle.
     pub(super) fn luma_behind(
         &self,
-        around: &Around<'_>,
+        context: &ProbeContext<'_>,
         id: u32,
         place: (i32, i32),
         shaded: &[f64],
     ) -> u8 {
-        if id as usize >= around.model.corners.len() {
+        if id as usize >= context.model.corners.len() {
             return self.background;
         }
-        let face = match around.prepared.fate(id) {
+        let face = match context.changes.fate(id) {
             Fate::Restyled(index) => {
-                self.face_after(around, &around.prepared.restyled[index], shaded)
+                self.face_after(context, &context.changes.restyled[index], shaded)
             }
-            _ => self.face_now(around, id),
+            _ => self.face_now(context, id),
         };
         self.luma_at(&face, place)
     }
 
     /// The luma of a face at a pixel that it covers: of the nearest of its pieces.
     pub(super) fn luma_at(&self, face: &Face, (x, y): (i32, i32)) -> u8 {
-        let pixel = Region {
+        let pixel = PixelRect {
             x0: x,
             y0: y,
             x1: x + 1,
