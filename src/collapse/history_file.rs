@@ -8,7 +8,6 @@
 use std::path::Path;
 
 use glam::DVec3;
-use sha2::{Digest, Sha256};
 
 use super::{
     History,
@@ -16,11 +15,17 @@ use super::{
 };
 use crate::{
     Error, Result,
+    encode::sealed_file::{SealedFormat, SealedReader, push_text, seal},
     num::{Frame, Precision},
 };
 
-const MAGIC: &[u8; 8] = b"LODMHIST";
-const FORMAT: u32 = 1;
+const HISTORY: SealedFormat = SealedFormat {
+    magic: *b"LODMHIST",
+    version: 1,
+    name: "history",
+    written_by: "simplify --history",
+    advice: "",
+};
 const COLLAPSE: u8 = 1;
 const MOVE: u8 = 2;
 const FLIP: u8 = 3;
@@ -30,13 +35,9 @@ impl History {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let h = &self.header;
-        let mut out = Vec::with_capacity(256 + h.options.len() + 33 * self.records.len());
-        out.extend(MAGIC);
-        out.extend(FORMAT.to_le_bytes());
-        for text in [&h.version, &h.options] {
-            out.extend((text.len() as u32).to_le_bytes());
-            out.extend(text.as_bytes());
-        }
+        let mut out = HISTORY.begin(256 + h.options.len() + 33 * self.records.len());
+        push_text(&mut out, &h.version);
+        push_text(&mut out, &h.options);
         out.extend(h.input);
         out.push(u8::from(h.precision == Precision::F64));
         out.extend(h.frame.exponent.to_le_bytes());
@@ -66,9 +67,7 @@ impl History {
                 out.extend(entry.rows.iter().flat_map(|v| v.to_le_bytes()));
             }
         }
-        let checksum = Sha256::digest(&out);
-        out.extend(checksum);
-        out
+        seal(out)
     }
 
     /// Reads a file's bytes; `path` is for messages.
@@ -79,30 +78,10 @@ impl History {
     /// [`Error::Input`] where the bytes are no history, cut short or damaged; [`Error::Unsupported`] where a newer
     /// version wrote them.
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
-        let mut reader = Reader {
-            rest: bytes,
-            length: bytes.len(),
-            path: path.as_ref(),
-        };
-        if reader.take(MAGIC.len()).ok() != Some(MAGIC.as_slice()) {
-            return Err(reader.bad("not a history; expected a file that simplify --history wrote"));
-        }
-        let format = reader.u32()?;
-        if format != FORMAT {
-            return Err(Error::Unsupported(format!(
-                "{}: history format {format}; this version reads format {FORMAT}",
-                path.as_ref().display()
-            )));
-        }
-        let body = bytes.len().saturating_sub(32);
-        if body < MAGIC.len() + 4 || Sha256::digest(&bytes[..body])[..] != bytes[body..] {
-            return Err(reader.bad("cut short or damaged: the checksum at the end does not fit"));
-        }
-        reader.rest = &bytes[MAGIC.len() + 4..body];
+        let mut reader = HISTORY.open(bytes, path.as_ref())?;
         let version = reader.text()?;
         let options = reader.text()?;
-        let mut input = [0; 32];
-        input.copy_from_slice(reader.take(32)?);
+        let input = reader.array()?;
         let precision = match reader.u8()? {
             0 => Precision::F32,
             1 => Precision::F64,
@@ -129,31 +108,31 @@ impl History {
         for _ in 0..count {
             history.read_record(&mut reader)?;
         }
-        if !reader.rest.is_empty() {
+        if reader.remaining() > 0 {
             return Err(reader.bad("bytes after the last record"));
         }
         Ok(history)
     }
 
-    fn read_record(&mut self, reader: &mut Reader<'_>) -> Result<()> {
+    fn read_record(&mut self, reader: &mut SealedReader<'_>) -> Result<()> {
         let kind = reader.u8()?;
         let record = match kind {
             COLLAPSE => {
-                let [keep, gone] = reader.edge()?;
-                let to = reader.position(self.header.precision)?;
+                let [keep, gone] = edge(reader)?;
+                let to = position(reader, self.header.precision)?;
                 Record::Collapse { keep, gone, to }
             }
             MOVE => Record::Move {
                 vertex: reader.u32()?,
-                to: reader.position(self.header.precision)?,
+                to: position(reader, self.header.precision)?,
             },
             FLIP => Record::Flip {
-                edge: reader.edge()?,
+                edge: edge(reader)?,
             },
             _ => {
                 return Err(Error::Unsupported(format!(
                     "{}: record kind {kind}; this version knows kinds {COLLAPSE} to {FLIP}",
-                    reader.path.display()
+                    reader.path().display()
                 )));
             }
         };
@@ -179,74 +158,29 @@ impl History {
     }
 }
 
-/// Bytes still to be read.
-struct Reader<'a> {
-    rest: &'a [u8],
-    length: usize,
-    path: &'a Path,
+/// Reads two ascending vertex ids.
+fn edge(reader: &mut SealedReader<'_>) -> Result<[u32; 2]> {
+    let (a, b) = (reader.u32()?, reader.u32()?);
+    if a < b {
+        Ok([a, b])
+    } else {
+        Err(reader.bad(&format!("the edge ({a}, {b}); expected ascending ids")))
+    }
 }
 
-impl<'a> Reader<'a> {
-    fn bad(&self, message: &str) -> Error {
-        let at = self.length - self.rest.len();
-        Error::input(self.path, format!("{message} (near byte {at})"))
+/// Reads a finite position.
+fn position(reader: &mut SealedReader<'_>, precision: Precision) -> Result<DVec3> {
+    let mut to = [0.0; 3];
+    for x in &mut to {
+        *x = match precision {
+            Precision::F32 => f64::from(f32::from_bits(reader.u32()?)),
+            Precision::F64 => f64::from_bits(reader.u64()?),
+        };
     }
-
-    fn take(&mut self, count: usize) -> Result<&'a [u8]> {
-        match self.rest.split_at_checked(count) {
-            Some((taken, rest)) => {
-                self.rest = rest;
-                Ok(taken)
-            }
-            None => Err(self.bad("cut short")),
-        }
-    }
-
-    fn u8(&mut self) -> Result<u8> {
-        Ok(self.take(1)?[0])
-    }
-
-    fn u32(&mut self) -> Result<u32> {
-        let mut bytes = [0; 4];
-        bytes.copy_from_slice(self.take(4)?);
-        Ok(u32::from_le_bytes(bytes))
-    }
-
-    fn u64(&mut self) -> Result<u64> {
-        let mut bytes = [0; 8];
-        bytes.copy_from_slice(self.take(8)?);
-        Ok(u64::from_le_bytes(bytes))
-    }
-
-    /// Two ascending vertex ids.
-    fn edge(&mut self) -> Result<[u32; 2]> {
-        let (a, b) = (self.u32()?, self.u32()?);
-        if a < b {
-            Ok([a, b])
-        } else {
-            Err(self.bad(&format!("the edge ({a}, {b}); expected ascending ids")))
-        }
-    }
-
-    fn position(&mut self, precision: Precision) -> Result<DVec3> {
-        let mut to = [0.0; 3];
-        for x in &mut to {
-            *x = match precision {
-                Precision::F32 => f64::from(f32::from_bits(self.u32()?)),
-                Precision::F64 => f64::from_bits(self.u64()?),
-            };
-        }
-        let to = DVec3::from_array(to);
-        if to.is_finite() {
-            Ok(to)
-        } else {
-            Err(self.bad(&format!("the position {to}; expected finite numbers")))
-        }
-    }
-
-    fn text(&mut self) -> Result<String> {
-        let length = self.u32()? as usize;
-        let bytes = self.take(length)?.to_vec();
-        String::from_utf8(bytes).map_err(|_| self.bad("a text is not UTF-8"))
+    let to = DVec3::from_array(to);
+    if to.is_finite() {
+        Ok(to)
+    } else {
+        Err(reader.bad(&format!("the position {to}; expected finite numbers")))
     }
 }

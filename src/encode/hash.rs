@@ -29,7 +29,7 @@ macro_rules! raw_number {
     )*};
 }
 
-raw_number!(u8, u16, u32, f32, f64);
+raw_number!(u8, u16, u32, u64, i64, f32, f64);
 
 impl Raw for [u8; 3] {
     const BYTES: u32 = 3;

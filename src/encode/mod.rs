@@ -4,10 +4,12 @@
 //! by the hash of their pixels ([`hash`]), never by that of a PNG file, which depends on the encoder.
 
 pub mod atomic;
+pub mod byte_cursor;
 pub mod bytes;
 mod font;
 pub mod hash;
 pub mod json;
 pub mod npy;
 pub mod png;
+pub mod sealed_file;
 pub mod sheet;

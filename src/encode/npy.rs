@@ -1,18 +1,18 @@
 //! NumPy arrays (.npy): buffers that no picture can hold, such as ids and depth.
 //!
-//! Little-endian, C order, version 1.0 of the format: planes as (height, width), rows of three as (n, 3).
-//! Reading is own code, because `npyz` 0.9 panics on a shape whose product overflows.
+//! Little-endian, C order, at most four dimensions; written as version 1.0 of the format, read as versions 1 to 3. Grids
+//! have the shape (height, width), rows of three (n, 3). Own code: the format is a line of text before the bytes, and the
+//! crate for it brings 18 others, a C compiler, and a panic on a shape whose product overflows.
+//!
 //! Limits on reading: the array must be as large as the file says, so a small file cannot ask for much memory.
 
-use std::path::Path;
+use std::{fmt::Write as _, path::Path};
 
-use npyz::{DType, TypeStr, WriterBuilder};
-
-use super::{atomic, bytes};
+use super::{atomic, byte_cursor::ByteCursor, bytes, hash::Raw};
 use crate::{Error, Result, num::Grid};
 
 /// A number that arrays are made of.
-pub trait Element: Copy + npyz::Serialize {
+pub trait Element: Raw {
     /// NumPy's name of the type, with its byte order.
     const TYPE: &'static str;
 
@@ -34,7 +34,14 @@ macro_rules! element {
     )*};
 }
 
-element!(u8: "|u1", u16: "<u2", u32: "<u4", f32: "<f4", f64: "<f8");
+element!(u8: "|u1", u16: "<u2", u32: "<u4", u64: "<u8", i64: "<i8", f32: "<f4", f64: "<f8");
+
+/// Most dimensions of an array.
+const MOST_DIMENSIONS: usize = 4;
+/// The first bytes of every file.
+const MAGIC: &[u8] = b"\x93NUMPY";
+/// The values begin at a multiple of this.
+const ALIGNMENT: usize = 64;
 
 /// Writes a plane as an array of shape (height, width); an existing file is replaced as a whole.
 ///
@@ -42,7 +49,7 @@ element!(u8: "|u1", u16: "<u2", u32: "<u4", f32: "<f4", f64: "<f8");
 /// As [`atomic::write`].
 pub fn write_plane<T: Element>(path: &Path, plane: &Grid<T>) -> Result<()> {
     let shape = [u64::from(plane.height()), u64::from(plane.width())];
-    write(path, plane.values(), shape)
+    write_array(path, plane.values(), &shape)
 }
 
 /// Writes rows of three numbers (points, triangles) as an array of shape (rows, 3); an existing file is replaced as a
@@ -51,35 +58,67 @@ pub fn write_plane<T: Element>(path: &Path, plane: &Grid<T>) -> Result<()> {
 /// # Errors
 /// As [`atomic::write`].
 pub fn write_rows<T: Element>(path: &Path, rows: &[[T; 3]]) -> Result<()> {
-    write(path, rows.as_flattened(), [rows.len() as u64, 3])
+    write_array(path, rows.as_flattened(), &[rows.len() as u64, 3])
 }
 
-fn write<T: Element>(path: &Path, values: &[T], shape: [u64; 2]) -> Result<()> {
-    let dtype = dtype::<T>()?;
+/// Writes an array of one to four dimensions in C order; an existing file is replaced as a whole.
+///
+/// # Errors
+/// [`Error::Internal`] where `shape` is not that of `values`; as [`atomic::write`].
+pub fn write_array<T: Element>(path: &Path, values: &[T], shape: &[u64]) -> Result<()> {
+    if count(shape) != Some(values.len() as u64) {
+        return Err(Error::Internal(format!(
+            "an array of shape {shape:?} with {} values",
+            values.len()
+        )));
+    }
+    let head = header(T::TYPE, shape);
     atomic::write(path, |file| {
-        let mut writer = npyz::WriteOptions::new()
-            .dtype(dtype)
-            .shape(&shape)
-            .writer(file)
-            .begin_nd()?;
-        writer.extend(values.iter())?;
-        writer.finish()
+        file.write_all(&head)?;
+        let mut part = Vec::new();
+        for values in values.chunks(4_096) {
+            part.clear();
+            values.iter().for_each(|&value| value.append(&mut part));
+            file.write_all(&part)?;
+        }
+        Ok(())
     })
 }
 
-fn dtype<T: Element>() -> Result<DType> {
-    let name: TypeStr = T::TYPE
-        .parse()
-        .map_err(|_| Error::Internal(format!("{} is no array type", T::TYPE)))?;
-    Ok(DType::new_scalar(name))
+/// The bytes before the values: magic, version, length of a Python dictionary, and the dictionary, padded with spaces.
+fn header(name: &str, shape: &[u64]) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{name}', 'fortran_order': False, 'shape': (");
+    for side in shape {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{side}, ");
+    }
+    text.push_str("), }");
+    let begin = MAGIC.len() + 4;
+    let total = (begin + text.len() + 1).next_multiple_of(ALIGNMENT);
+    let length = (total - begin) as u16;
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(text.as_bytes());
+    bytes.resize(total - 1, b' ');
+    bytes.push(b'\n');
+    bytes
+}
+
+/// Number of values of an array with one to four sides; `None` where it has others, or too many to count.
+fn count(shape: &[u64]) -> Option<u64> {
+    if !(1..=MOST_DIMENSIONS).contains(&shape.len()) {
+        return None;
+    }
+    shape.iter().try_fold(1_u64, |n, &side| n.checked_mul(side))
 }
 
 /// Reads an array of shape (height, width) and exactly this type.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Input`] where the file is damaged or holds another array.
+/// As [`read_array`], and where the array has another shape.
 pub fn read_plane<T: Element>(path: &Path) -> Result<Grid<T>> {
-    let (values, rows, columns) = read(path)?;
+    let (values, [rows, columns]) = read_table(path)?;
     match (u32::try_from(columns), u32::try_from(rows)) {
         (Ok(width), Ok(height)) => Grid::new(width, height, values)
             .ok_or_else(|| Error::Internal("an array changed its size".into())),
@@ -93,9 +132,9 @@ pub fn read_plane<T: Element>(path: &Path) -> Result<Grid<T>> {
 /// Reads an array of shape (rows, 3) and exactly this type.
 ///
 /// # Errors
-/// As [`read_plane`].
+/// As [`read_array`], and where the array has another shape.
 pub fn read_rows<T: Element>(path: &Path) -> Result<Vec<[T; 3]>> {
-    let (values, _, columns) = read(path)?;
+    let (values, [_, columns]) = read_table(path)?;
     if columns != 3 {
         return Err(Error::input(
             path,
@@ -106,8 +145,23 @@ pub fn read_rows<T: Element>(path: &Path) -> Result<Vec<[T; 3]>> {
     Ok(rows.to_vec())
 }
 
-/// The values, rows and columns of a two-dimensional array.
-fn read<T: Element>(path: &Path) -> Result<(Vec<T>, u64, u64)> {
+/// Reads the values, rows and columns of a two-dimensional array.
+fn read_table<T: Element>(path: &Path) -> Result<(Vec<T>, [u64; 2])> {
+    let (values, shape) = read_array(path)?;
+    let sides = <[u64; 2]>::try_from(shape).map_err(|shape| {
+        Error::input(
+            path,
+            format!("holds an array of {} dimensions; expected 2", shape.len()),
+        )
+    })?;
+    Ok((values, sides))
+}
+
+/// Reads the values and the shape of an array of exactly this type, of one to four dimensions, in C order.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] where the file is damaged or holds another array.
+pub fn read_array<T: Element>(path: &Path) -> Result<(Vec<T>, Vec<u64>)> {
     let bytes = bytes::read(path)?;
     let header = Header::of(&bytes).ok_or_else(|| {
         Error::input(
@@ -126,30 +180,34 @@ fn read<T: Element>(path: &Path) -> Result<(Vec<T>, u64, u64)> {
             ),
         ));
     }
-    let &[rows, columns] = &header.shape[..] else {
+    let shape = header.shape;
+    if !(1..=MOST_DIMENSIONS).contains(&shape.len()) {
         return Err(Error::input(
             path,
             format!(
-                "holds an array of {} dimensions; expected 2",
-                header.shape.len()
-            ),
-        ));
-    };
-    let size = u128::from(rows) * u128::from(columns) * size_of::<T>() as u128;
-    if size != header.body.len() as u128 {
-        return Err(Error::input(
-            path,
-            format!(
-                "claims {rows} x {columns} values but has {} bytes of them; expected {size}",
-                header.body.len()
+                "holds an array of {} dimensions; expected 1 to {MOST_DIMENSIONS}",
+                shape.len()
             ),
         ));
     }
-    let values = header.body.chunks_exact(size_of::<T>());
-    Ok((values.map(T::from_bytes).collect(), rows, columns))
+    let size = count(&shape).and_then(|n| n.checked_mul(u64::from(T::BYTES)));
+    if size != Some(header.body.len() as u64) {
+        let sides: Vec<String> = shape.iter().map(u64::to_string).collect();
+        let expected = size.map_or("more than any file has".into(), |size| size.to_string());
+        return Err(Error::input(
+            path,
+            format!(
+                "claims {} values but has {} bytes of them; expected {expected}",
+                sides.join(" x "),
+                header.body.len(),
+            ),
+        ));
+    }
+    let values = header.body.chunks_exact(T::BYTES as usize);
+    Ok((values.map(T::from_bytes).collect(), shape))
 }
 
-/// What stands before the values, and the values.
+/// The parts of a file: the entries of its dictionary, and the bytes of the values.
 struct Header<'a> {
     descr: &'a str,
     fortran_order: bool,
@@ -158,23 +216,18 @@ struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    /// Reads what NumPy and npyz write: a Python dictionary with exactly these keys, without escapes.
+    /// Reads the header that NumPy writes: a Python dictionary with exactly these keys, without escapes.
     fn of(bytes: &'a [u8]) -> Option<Self> {
-        let rest = bytes.strip_prefix(b"\x93NUMPY")?;
-        let (version, rest) = rest.split_first_chunk::<2>()?;
-        let (length, rest) = match version {
-            [1, 0] => {
-                let (length, rest) = rest.split_first_chunk::<2>()?;
-                (u32::from(u16::from_le_bytes(*length)), rest)
-            }
-            [2 | 3, 0] => {
-                let (length, rest) = rest.split_first_chunk::<4>()?;
-                (u32::from_le_bytes(*length), rest)
-            }
+        let mut cursor = ByteCursor::new(bytes, 0);
+        if cursor.take(MAGIC.len())? != MAGIC {
+            return None;
+        }
+        let length = match cursor.array::<2>()? {
+            [1, 0] => u32::from(u16::from_le_bytes(cursor.array()?)),
+            [2 | 3, 0] => u32::from_le_bytes(cursor.array()?),
             _ => return None,
         };
-        let (text, body) = rest.split_at_checked(length as usize)?;
-        let text = std::str::from_utf8(text).ok()?;
+        let text = std::str::from_utf8(cursor.take(length as usize)?).ok()?;
         let after = |key: &str| Some(text.split_once(key)?.1.trim_start());
         let (descr, _) = after("'descr':")?.strip_prefix('\'')?.split_once('\'')?;
         let (shape, _) = after("'shape':")?.strip_prefix('(')?.split_once(')')?;
@@ -194,7 +247,7 @@ impl<'a> Header<'a> {
                 .filter(|side| !side.is_empty())
                 .map(|side| side.parse().ok())
                 .collect::<Option<_>>()?,
-            body,
+            body: cursor.rest(),
         })
     }
 }

@@ -21,10 +21,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     (
         "visibility",
-        &["error", "progress", "num", "mesh", "view", "raster"],
+        &[
+            "error", "progress", "num", "encode", "mesh", "view", "raster",
+        ],
     ),
     ("bound", &["error", "progress", "num", "mesh"]),
-    ("collapse", &["error", "progress", "num", "mesh"]),
+    ("collapse", &["error", "progress", "num", "encode", "mesh"]),
     (
         "simplify",
         &[
