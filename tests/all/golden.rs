@@ -1,11 +1,6 @@
 //! The golden set: that it holds, and that it would notice if it did not.
 
-use std::{
-    collections::BTreeSet,
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{collections::BTreeSet, fs, path::Path};
 
 use lodmark::{
     Silent,
@@ -20,12 +15,10 @@ use lodmark::{
     view::{Sphere, ViewSet},
 };
 
+use crate::support::{folder, lodmark};
+
 fn checked_in() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/golden"))
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
 }
 
 /// Items that cost nothing, one of them with a picture.
@@ -52,7 +45,7 @@ fn names(mismatches: &[Mismatch]) -> Vec<&str> {
 }
 
 #[test]
-fn a_result_that_changed_a_bit_is_named() {
+fn every_golden_holds() {
     let items = Group::all(&Silent).expect("every case runs");
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     let mismatches = check(checked_in(), &items, &out).expect("the goldens are readable");
@@ -74,7 +67,7 @@ fn a_result_that_changed_a_bit_is_named() {
 }
 
 #[test]
-fn the_program_embeds_other_goldens_than_the_file() {
+fn the_program_embeds_the_goldens_of_the_file() {
     let text = fs::read_to_string(checked_in().join(RECORD_NAME)).expect("readable");
     let embedded = Record::embedded().expect("a record");
     assert_eq!(embedded.to_text(), text);
@@ -82,7 +75,7 @@ fn the_program_embeds_other_goldens_than_the_file() {
 }
 
 #[test]
-fn one_bit_of_one_sample_goes_unnoticed() {
+fn one_bit_of_one_sample_changes_the_hash() {
     let mesh = generate::probe();
     let sphere = Sphere::of_mesh(&mesh).expect("it has triangles");
     let set = ViewSet::costs(&sphere).expect("views");
@@ -105,7 +98,7 @@ fn one_bit_of_one_sample_goes_unnoticed() {
 }
 
 #[test]
-fn a_planted_change_of_any_golden_goes_unnoticed() {
+fn every_planted_change_of_a_golden_is_noticed() {
     let folder = folder();
     let out = folder.path().join("out");
     let items = few_items();
@@ -127,7 +120,7 @@ fn a_planted_change_of_any_golden_goes_unnoticed() {
 }
 
 #[test]
-fn a_pixel_that_changed_by_one_level_is_not_shown() {
+fn a_pixel_that_changed_by_one_level_is_shown() {
     let folder = folder();
     let out = folder.path().join("out");
     let mut items = few_items();
@@ -151,7 +144,7 @@ fn a_pixel_that_changed_by_one_level_is_not_shown() {
 }
 
 #[test]
-fn a_picture_that_no_longer_shows_what_is_hashed_passes() {
+fn a_picture_that_no_longer_shows_what_is_hashed_is_named() {
     let folder = folder();
     let out = folder.path().join("out");
     let items = few_items();
@@ -174,7 +167,7 @@ fn a_picture_that_no_longer_shows_what_is_hashed_passes() {
 }
 
 #[test]
-fn a_golden_that_is_missing_or_left_over_passes() {
+fn a_golden_that_is_missing_or_left_over_is_named() {
     let folder = folder();
     let out = folder.path().join("out");
     let items = few_items();
@@ -196,7 +189,7 @@ fn a_golden_that_is_missing_or_left_over_passes() {
 }
 
 #[test]
-fn a_damaged_record_is_read_with_gaps() {
+fn a_damaged_record_is_refused() {
     assert!(
         Record::parse("a/one\n")
             .expect_err("no value")
@@ -213,18 +206,10 @@ fn a_damaged_record_is_read_with_gaps() {
     assert_eq!(refused.exit_code(), 3);
 }
 
-fn lodmark(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lodmark"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the command was built")
-}
-
 #[test]
-fn the_command_needs_files_to_check_itself() {
+fn the_command_checks_itself_without_files() {
     let folder = folder();
-    let done = lodmark(&["selfcheck", "--threads", "3"], folder.path());
+    let done = lodmark(&folder, &["selfcheck", "--threads", "3"]);
     let said = String::from_utf8_lossy(&done.stdout);
     assert_eq!(done.status.code(), Some(0), "{said}");
     assert!(said.contains("3 threads"), "{said}");
@@ -236,7 +221,7 @@ fn the_command_needs_files_to_check_itself() {
 }
 
 #[test]
-fn the_command_accepts_a_golden_that_does_not_hold() {
+fn the_command_refuses_a_golden_that_does_not_hold() {
     let folder = folder();
     fs::create_dir(folder.path().join("golden")).expect("target is writable");
     for entry in fs::read_dir(checked_in()).expect("readable") {
@@ -254,7 +239,7 @@ fn the_command_accepts_a_golden_that_does_not_hold() {
     let first = if value.starts_with('0') { "1" } else { "0" };
     let planted = format!("{name} {first}{}", &value[1..]);
     fs::write(&record, text.replace(&format!("{name} {value}"), &planted)).expect("writable");
-    let done = lodmark(&["golden", "check", "--out", "out"], folder.path());
+    let done = lodmark(&folder, &["golden", "check", "--out", "out"]);
     let said = String::from_utf8_lossy(&done.stdout);
     assert_eq!(done.status.code(), Some(1), "{said}");
     assert!(

@@ -16,7 +16,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{support::Random, support::bounded, support::meshes};
+use crate::support::{Random, bounded, meshes};
 
 /// What lies around a collapsed edge.
 #[derive(Clone, Copy, Debug, PartialEq)]

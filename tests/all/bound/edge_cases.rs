@@ -21,14 +21,9 @@ use lodmark::{
 };
 use tempfile::TempDir;
 
-use crate::{
-    bound::envelope::distance as to_triangle, bound::envelope::lattice, support::Random,
-    support::expect, support::folder, support::lodmark, support::put, support::stdout,
+use crate::support::{
+    Random, at, distance as to_triangle, expect, folder, lattice, lodmark, put, stdout,
 };
-
-fn at(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
 
 fn seen_from(v: DVec3, p: DVec3, s: DVec3) -> f64 {
     let (a, b) = ((p - v).normalize(), (s - v).normalize());
@@ -75,7 +70,7 @@ fn held(original: &Mesh, low: &Mesh, cell: &ViewCell, degrees: f64) -> AngleRepo
 }
 
 #[test]
-fn a_needle_or_a_third_face_at_an_edge_hides_an_angle_from_the_verifier() {
+fn needles_and_third_faces_at_an_edge_hide_no_angle_from_the_verifier() {
     let mesh = awkward(|_| DVec3::ZERO);
     let mut random = Random(31);
     for case in 0..24 {
@@ -117,7 +112,7 @@ fn a_needle_or_a_third_face_at_an_edge_hides_an_angle_from_the_verifier() {
 }
 
 #[test]
-fn a_third_face_at_an_edge_is_left_out_of_a_distance() {
+fn a_third_face_at_an_edge_counts_in_a_distance() {
     let mesh = awkward(|_| DVec3::ZERO);
     let corners =
         |m: &Mesh| -> Vec<[DVec3; 3]> { (0..m.triangles().len()).map(|t| m.corners(t)).collect() };
@@ -149,7 +144,7 @@ fn a_third_face_at_an_edge_is_left_out_of_a_distance() {
 }
 
 #[test]
-fn a_viewer_inside_a_closed_mesh_sees_what_moved_by_more_than_the_bound() {
+fn no_viewer_inside_a_closed_mesh_sees_a_move_beyond_the_bound() {
     let mesh = canonical(&generate::icosphere(2)).mesh;
     let step = at(0.02, -0.01, 0.0);
     let moved = mesh.positions().iter().map(|&p| p + step).collect();
@@ -201,7 +196,7 @@ fn a_viewer_inside_a_closed_mesh_sees_what_moved_by_more_than_the_bound() {
 }
 
 #[test]
-fn viewers_on_what_stands_for_the_original_are_missed_where_none_is_on_the_original() {
+fn viewers_on_what_stands_for_the_original_are_found_where_none_is_on_the_original() {
     let triangle = |z: f64| {
         let corners = [(-1.0, -1.0), (2.0, -0.5), (0.3, 1.5)].map(|(x, y)| at(x, y, z));
         Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid")
@@ -220,7 +215,7 @@ fn viewers_on_what_stands_for_the_original_are_missed_where_none_is_on_the_origi
 }
 
 #[test]
-fn without_an_angle_a_step_aside_passes_and_with_nearly_a_right_one_a_wider_one() {
+fn without_an_angle_no_step_aside_passes_and_with_nearly_a_right_one_no_wider_one() {
     let mesh = awkward(|_| DVec3::ZERO);
     let eye = at(0.5, 0.25, 4.0);
     let cell = ViewCell::point(eye).expect("a point");
@@ -269,7 +264,7 @@ fn cells_without_end() -> [(&'static str, ViewCell); 3] {
 }
 
 #[test]
-fn a_viewer_of_an_endless_cell_sees_a_move_inside_a_drawn_region() {
+fn no_viewer_of_an_endless_cell_sees_a_move_inside_a_drawn_region() {
     let (point, degrees) = (at(0.1, 0.2, 0.0), 12.0);
     let aperture = Aperture::degrees(degrees).expect("below 90");
     let mut random = Random(0xe4d);
@@ -332,7 +327,7 @@ fn scene() -> TempDir {
 }
 
 #[test]
-fn an_awkward_scene_ends_a_command_without_an_answer() {
+fn every_command_has_an_answer_to_an_awkward_scene() {
     let dir = scene();
     for cell in ["on", "cut", "far", "line", "plane", "half_space"] {
         let file = format!("{cell}.json");

@@ -3,60 +3,19 @@
 use glam::DVec3;
 use lodmark::bound::envelope::{Change, Coverage, Facet, Pieces, Reach, Surface, Trial};
 
-use crate::{bound::tolerance_volume::cases, support::Random, support::meshes};
-
-/// Squared distance from a point to a triangle: the least over its face, sides and corners, all of them.
-pub(crate) fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let segment = |x: DVec3, y: DVec3| {
-        let d = y - x;
-        let t = if d.length_squared() > 0.0 {
-            ((p - x).dot(d) / d.length_squared()).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        (x + d * t - p).length()
-    };
-    let edges = segment(a, b).min(segment(b, c)).min(segment(c, a));
-    let n = (b - a).cross(c - a);
-    let inside = |x: DVec3, y: DVec3| (y - x).cross(p - x).dot(n) >= 0.0;
-    if n.length_squared() > 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
-        edges.min((p - a).dot(n).abs() / n.length())
-    } else {
-        edges
-    }
-}
-
-fn vector(random: &mut Random, size: f64) -> DVec3 {
-    let mut axis = || (random.unit() * 2.0 - 1.0) * size;
-    DVec3::new(axis(), axis(), axis())
-}
+use crate::{
+    bound::tolerance_volume::cases,
+    support::{Random, distance, distance_to_all, lattice, meshes},
+};
 
 fn triangle(random: &mut Random, size: f64) -> [DVec3; 3] {
-    let middle = vector(random, 1.0);
-    [0; 3].map(|_| middle + vector(random, size))
-}
-
-fn to_all(p: DVec3, all: &[[DVec3; 3]]) -> f64 {
-    let distances = all.iter().map(|&t| distance(p, t));
-    distances.fold(f64::INFINITY, f64::min)
-}
-
-/// Points of a triangle: a lattice, corners and sides included.
-pub(crate) fn lattice([a, b, c]: [DVec3; 3], steps: u32) -> impl Iterator<Item = DVec3> {
-    (0..=steps).flat_map(move |i| {
-        (0..=steps - i).map(move |j| {
-            let (s, t) = (
-                f64::from(i) / f64::from(steps),
-                f64::from(j) / f64::from(steps),
-            );
-            a + (b - a) * s + (c - a) * t
-        })
-    })
+    let middle = random.vector(1.0);
+    [0; 3].map(|_| middle + random.vector(size))
 }
 
 /// The largest sampled distance of a triangle from others.
 fn farthest(of: [DVec3; 3], from: &[[DVec3; 3]]) -> f64 {
-    let distances = lattice(of, 12).map(|p| to_all(p, from));
+    let distances = lattice(of, 12).map(|p| distance_to_all(p, from));
     distances.fold(0.0, f64::max)
 }
 
@@ -67,15 +26,12 @@ fn the_distance_to_a_triangle_is_that_to_its_nearest_point_and_never_shorter() {
         let mut corners = triangle(&mut random, 1.0);
         match case % 5 {
             // A needle, a segment, a point.
-            0 => {
-                corners[2] =
-                    corners[0] + (corners[1] - corners[0]) * 0.3 + vector(&mut random, 1e-9)
-            }
+            0 => corners[2] = corners[0] + (corners[1] - corners[0]) * 0.3 + random.vector(1e-9),
             1 => corners[2] = corners[1],
             2 if case % 2 == 0 => corners = [corners[0]; 3],
             _ => {}
         }
-        let p = vector(&mut random, 2.0);
+        let p = random.vector(2.0);
         let found = lodmark::num::math::sqrt(Facet::new(corners).distance2(p));
         let expected = distance(p, corners);
         assert!(
@@ -154,7 +110,7 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
             let fan: Vec<[DVec3; 3]> = kept
                 .iter()
                 .filter_map(|&t| live[t as usize])
-                .map(|corners| corners.map(|p| p + vector(&mut random, size)))
+                .map(|corners| corners.map(|p| p + random.vector(size)))
                 .collect();
             coverage.gather(&ids, |t| live[t as usize], reach, &mut trial);
             let covers = trial.covers(fan.iter().copied(), reach);

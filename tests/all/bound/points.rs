@@ -15,9 +15,7 @@ use lodmark::bound::{
     view_cell::{Shape, ViewCell},
 };
 
-fn at(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
+use crate::support::{Random, at, bound_count};
 
 fn aperture(radians: f64) -> Aperture {
     Aperture::radians(radians).expect("in range")
@@ -179,37 +177,6 @@ fn the_extent_for_a_polygon_is_the_published_one() {
     }
 }
 
-/// Numbers from SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        at(self.signed(), self.signed(), self.signed())
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let v = self.vector();
-            let length = libm::sqrt(v.dot(v));
-            if (0.1..=1.0).contains(&length) {
-                return v / length;
-            }
-        }
-    }
-}
-
 /// Viewpoints of a cell by numbers, so that a search can go on around the best of them.
 struct Sampler<'a> {
     cell: &'a ViewCell,
@@ -260,7 +227,7 @@ impl Sampler<'_> {
                     if round < 60 {
                         random.unit()
                     } else {
-                        (x + reach * random.signed()).clamp(0.0, 1.0)
+                        (x + reach * random.between(-1.0, 1.0)).clamp(0.0, 1.0)
                     }
                 })
                 .collect();
@@ -289,12 +256,12 @@ const CLASSES: [&str; 7] = [
 fn random_cell(class: &str, random: &mut Random) -> ViewCell {
     loop {
         let cell = match class {
-            "point" => ViewCell::point(random.vector()),
-            "segment" => ViewCell::segment([random.vector(), random.vector()]),
-            "line" => ViewCell::line(random.vector(), random.direction()),
+            "point" => ViewCell::point(random.vector(1.0)),
+            "segment" => ViewCell::segment([random.vector(1.0), random.vector(1.0)]),
+            "line" => ViewCell::line(random.vector(1.0), random.direction()),
             "polygon" => {
                 // Corners on an ellipse are convex.
-                let (c, u, v) = (random.vector(), random.vector(), random.vector());
+                let (c, u, v) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
                 let n = 3 + (4.0 * random.unit()) as usize;
                 let corner = |i: usize| {
                     let angle = 2.0 * PI * i as f64 / n as f64;
@@ -302,12 +269,12 @@ fn random_cell(class: &str, random: &mut Random) -> ViewCell {
                 };
                 ViewCell::polygon(&(0..n).map(corner).collect::<Vec<_>>())
             }
-            "plane" => ViewCell::plane(random.vector(), random.direction()),
+            "plane" => ViewCell::plane(random.vector(1.0), random.direction()),
             "polyhedron" => {
                 let n = 4 + (5.0 * random.unit()) as usize;
-                ViewCell::polyhedron(&(0..n).map(|_| random.vector()).collect::<Vec<_>>())
+                ViewCell::polyhedron(&(0..n).map(|_| random.vector(1.0)).collect::<Vec<_>>())
             }
-            _ => ViewCell::half_space(random.vector(), random.direction()),
+            _ => ViewCell::half_space(random.vector(1.0), random.direction()),
         };
         if let Ok(cell) = cell {
             return cell;
@@ -317,7 +284,7 @@ fn random_cell(class: &str, random: &mut Random) -> ViewCell {
 
 /// Cases for each class of cell: as many as `LODMARK_BOUND_CASES` says.
 fn trials() -> u32 {
-    u32::try_from(crate::support::bound_cases(1_000)).expect("a number of cases")
+    bound_count(1_000)
 }
 
 /// An angle in (0, 90) degrees: small ones, middle ones, and ones close to 90.
@@ -333,7 +300,7 @@ fn random_angle(random: &mut Random) -> f64 {
 /// A point outside the cell, near it and far from it, and a direction; now and then towards it or along an edge of it.
 fn random_task(cell: &ViewCell, random: &mut Random) -> (DVec3, DVec3) {
     loop {
-        let point = random.vector() * libm::pow(10.0, random.unit() + 0.2);
+        let point = random.vector(1.0) * libm::pow(10.0, random.unit() + 0.2);
         if cell.contains(point) {
             continue;
         }

@@ -22,11 +22,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::bounded;
-
-fn at(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
+use crate::support::{at, bounded};
 
 fn aperture(radians: f64) -> Aperture {
     Aperture::radians(radians).expect("in range")
@@ -226,7 +222,7 @@ fn a_point_cloud_has_the_exact_error_of_its_points() {
 }
 
 #[test]
-fn needles_and_edges_of_three_faces_have_no_bound() {
+fn needles_and_edges_of_three_faces_have_a_bound() {
     // Three faces at one edge, a needle, a face of no size, open borders all around.
     let mesh = |shift: DVec3| {
         let positions = [
@@ -263,7 +259,7 @@ fn needles_and_edges_of_three_faces_have_no_bound() {
 }
 
 #[test]
-fn a_region_is_cut_off_elsewhere_than_at_twice_its_bounded_part() {
+fn a_region_is_cut_off_at_twice_its_bounded_part() {
     let cell = ViewCell::segment([at(-1.0, 0.0, 5.0), at(1.0, 0.0, 5.0)]).expect("a segment");
     let found = profile(&cell, DVec3::ZERO, DVec3::X, aperture(0.1), 360, None).expect("a figure");
     let bounded = found.outline.iter().map(|p| p.length());

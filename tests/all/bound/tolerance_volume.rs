@@ -15,11 +15,6 @@ pub(crate) fn cases() -> u64 {
     crate::support::bound_cases(1_000)
 }
 
-fn vector(random: &mut Random, size: f64) -> DVec3 {
-    let mut axis = || (random.unit() * 2.0 - 1.0) * size;
-    DVec3::new(axis(), axis(), axis())
-}
-
 /// `[u, w]` with links around it: 4 to 6 boundary triangles at each end and two internal ones, bumpy.
 pub(crate) fn ring(random: &mut Random, bump: f64) -> ([DVec3; 2], Vec<OldFace>) {
     ring_of(random, bump, 0.4, 0.0)
@@ -39,7 +34,7 @@ fn ring_of(random: &mut Random, bump: f64, spread: f64, slope: f64) -> ([DVec3; 
             height,
         ));
     }
-    let mut end = |x: f64| DVec3::new(x, 0.0, 0.0) + vector(random, 0.25 * bump);
+    let mut end = |x: f64| DVec3::new(x, 0.0, 0.0) + random.vector(0.25 * bump);
     let (u, w) = (end(-0.35), end(0.35));
     let mut faces = Vec::new();
     // The vertices of the link near the top and the bottom see both ends.
@@ -154,7 +149,7 @@ fn the_shadow_of_a_cap_from_its_own_edge_is_what_the_height_limit_says() {
     let mut random = Random(0x5ead0);
     let (mut legal, mut illegal) = (0, 0);
     for _ in 0..cases() {
-        let base = [0; 3].map(|_| vector(&mut random, 1.0));
+        let base = [0; 3].map(|_| random.vector(1.0));
         let bound = 0.05 + random.unit();
         let Some(prism) = Prism::new(base) else {
             continue;
@@ -223,12 +218,12 @@ fn a_position_is_in_the_shadow_of_a_cap_where_a_face_would_pierce_it() {
     let mut random = Random(0xca9);
     let (mut dark, mut light) = (0, 0);
     for _ in 0..cases() {
-        let cap = [0; 3].map(|_| vector(&mut random, 1.0));
+        let cap = [0; 3].map(|_| random.vector(1.0));
         let Some(prism) = Prism::new(cap) else {
             continue;
         };
-        let source = [0; 2].map(|_| vector(&mut random, 1.5));
-        let through = (cap[0] + cap[1] + cap[2]) / 3.0 + vector(&mut random, 0.6);
+        let source = [0; 2].map(|_| random.vector(1.5));
+        let through = (cap[0] + cap[1] + cap[2]) / 3.0 + random.vector(0.6);
         let from = source[0] + (source[1] - source[0]) * random.unit();
         let v = from + (through - from) * (2.0 * random.unit());
         let depth = deepest(cap, source, v);
@@ -295,7 +290,7 @@ fn a_volume_holds_the_positions_that_are_allowed_and_no_others() {
             let (s, t) = (random.unit(), random.unit());
             let on =
                 face.points[0] * (1.0 - s) + (face.points[1] * t + face.points[2] * (1.0 - t)) * s;
-            let v = on + vector(&mut random, bound);
+            let v = on + random.vector(bound);
             let holds = volume.contains(v);
             if holds {
                 assert!(allowed(&faces, bound, v, 1e-7, 1e-6), "{bump} {bound} {v}");
@@ -373,7 +368,7 @@ fn the_published_sets_allow_at_least_what_the_rigorous_ones_do() {
         let [strict, loose] = [Source::Edges, Source::Vertices]
             .map(|source| Volume::new(&around, 0.15, source, 1e-9));
         for _ in 0..20 {
-            let v = vector(&mut random, 0.4);
+            let v = random.vector(0.4);
             if strict.contains(v) && !loose.cells().is_empty() {
                 assert!(loose.contains(v), "{v}");
                 both += 1;
@@ -396,7 +391,7 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
         let mut of = Quadratic::default();
         let rank = 1 + random.below(3);
         for _ in 0..rank {
-            let (n, d) = (vector(&mut random, 1.0), random.unit());
+            let (n, d) = (random.vector(1.0), random.unit());
             let m = [
                 n.x * n.x,
                 n.x * n.y,
@@ -423,9 +418,9 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
         assert!(volume.cells().iter().any(|c| c.contains(best, 1e-6)));
         for _ in 0..60 {
             let v = if random.below(2) == 0 {
-                vector(&mut random, 0.6)
+                random.vector(0.6)
             } else {
-                best + vector(&mut random, 1e-3)
+                best + random.vector(1e-3)
             };
             if volume.cells().iter().any(|c| c.contains(v, 0.0)) {
                 assert!(value(v) >= value(best) - 1e-9, "{v} beats {best}");
@@ -448,7 +443,7 @@ fn cuts_of_a_cell_add_up_to_its_volume() {
                 "{} {expected}",
                 cell.volume()
             );
-            let by = HalfSpace::behind(vector(&mut random, 0.7), vector(&mut random, 1.0));
+            let by = HalfSpace::behind(random.vector(0.7), random.vector(1.0));
             let by = by.expect("a direction");
             let parts = [by, by.complement()].map(|h| cell.cut(h, 1e-12));
             let [Some(a), Some(b)] = parts else { break };

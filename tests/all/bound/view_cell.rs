@@ -13,11 +13,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::bounded;
-
-fn at(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
+use crate::support::{at, bounded, distance};
 
 fn square() -> [DVec3; 4] {
     [
@@ -180,11 +176,13 @@ fn a_damaged_cell_file_is_refused_with_what_was_expected() {
     }
 }
 
-/// Closest distance of two segments and of a point and a triangle, by clamping; no code of the crate.
+/// Closest distance of two segments and of two triangles, by clamping; no code of the crate.
 mod brute {
     use glam::DVec3;
 
-    pub(super) fn point_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    use crate::support::distance;
+
+    fn point_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
         let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
         (p - a.lerp(b, t)).length()
     }
@@ -207,21 +205,6 @@ mod brute {
         best
     }
 
-    pub(super) fn point_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-        let edges = point_segment(p, a, b)
-            .min(point_segment(p, b, c))
-            .min(point_segment(p, c, a));
-        let n = (b - a).cross(c - a).normalize();
-        let inside = [(a, b), (b, c), (c, a)]
-            .iter()
-            .all(|&(x, y)| (y - x).cross(p - x).dot(n) >= 0.0);
-        if inside {
-            edges.min((p - a).dot(n).abs())
-        } else {
-            edges
-        }
-    }
-
     /// Where the segment goes through the triangle.
     pub(super) fn crosses([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
         let n = (b - a).cross(c - a);
@@ -239,9 +222,7 @@ mod brute {
         let sides = |x: [DVec3; 3]| [[x[0], x[1]], [x[1], x[2]], [x[2], x[0]]];
         let mut best = f64::INFINITY;
         for i in 0..3 {
-            best = best
-                .min(point_triangle(s[i], t))
-                .min(point_triangle(t[i], s));
+            best = best.min(distance(s[i], t)).min(distance(t[i], s));
             if crosses(sides(s)[i], t) || crosses(sides(t)[i], s) {
                 return 0.0;
             }
@@ -319,7 +300,7 @@ proptest! {
         prop_assert!(found <= least && found >= least - 1e-12, "{found} and {least}");
         let ends = [corners[0], corners[1]];
         let segment = ViewCell::segment(ends).expect("a segment");
-        let mut least = brute::point_triangle(ends[0], triangle).min(brute::point_triangle(ends[1], triangle));
+        let mut least = distance(ends[0], triangle).min(distance(ends[1], triangle));
         for i in 0..3 {
             least = least.min(brute::segments(ends, [triangle[i], triangle[(i + 1) % 3]]));
         }
@@ -329,7 +310,7 @@ proptest! {
         let found = segment.distance_to_triangle(triangle);
         prop_assert!(found <= least && found >= least - 1e-12, "{found} and {least}");
         let found = ViewCell::point(ends[0]).expect("a point").distance_to_triangle(triangle);
-        let least = brute::point_triangle(ends[0], triangle);
+        let least = distance(ends[0], triangle);
         prop_assert!(found <= least && found >= least - 1e-12, "{found} and {least}");
     }
 

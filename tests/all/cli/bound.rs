@@ -9,10 +9,7 @@ use lodmark::{
 };
 use tempfile::TempDir;
 
-use crate::{
-    support::code, support::expect, support::folder, support::lodmark, support::put,
-    support::stdout,
-};
+use crate::support::{code, expect, folder, json, lodmark, put, stdout};
 
 /// A sphere, a coarser one, and a segment cell beside them.
 fn scene() -> TempDir {
@@ -22,11 +19,6 @@ fn scene() -> TempDir {
     let cell = r#"{"schema": 1, "cell": {"segment": [[-1, 0, 5], [1, 0, 5]]}}"#;
     fs::write(dir.path().join("cell.json"), cell).expect("writes");
     dir
-}
-
-fn json(dir: &TempDir, name: &str) -> serde_json::Value {
-    let text = fs::read_to_string(dir.path().join(name)).expect("written");
-    serde_json::from_str(&text).expect("JSON")
 }
 
 #[test]
@@ -322,7 +314,7 @@ fn a_validity_region_is_drawn_as_a_figure_and_as_a_closed_surface() {
 }
 
 #[test]
-fn a_region_without_a_surface_is_written_as_a_mesh() {
+fn a_region_without_a_surface_is_not_written_as_a_mesh() {
     let dir = scene();
     let words = |out: &'static str, point: &'static str, angle: &'static str| {
         let fixed = ["bound-region", out, "--cell", "cell.json"];

@@ -16,8 +16,8 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::{
-    metric::appearance::shaken, support::code, support::expect, support::folder, support::lodmark,
-    support::put, support::stdout,
+    metric::appearance::shaken,
+    support::{code, expect, folder, lodmark, put, stdout},
 };
 
 /// Runs `compare`, holds it to an exit code, and reads its report.

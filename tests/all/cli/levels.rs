@@ -7,7 +7,7 @@ use lodmark::{io, mesh::generate};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::{support::expect, support::folder, support::lodmark, support::put, support::stdout};
+use crate::support::{expect, folder, json, lodmark, put, stdout};
 
 const SMALL: [&str; 8] = [
     "--size",
@@ -19,11 +19,6 @@ const SMALL: [&str; 8] = [
     "--visibility-size",
     "64",
 ];
-
-fn json(dir: &TempDir, name: &str) -> Value {
-    let text = fs::read_to_string(dir.path().join(name)).expect("written");
-    serde_json::from_str(&text).expect("JSON")
-}
 
 fn scene() -> TempDir {
     let dir = folder();
@@ -144,7 +139,7 @@ fn every_level_is_the_run_to_it_and_is_judged_as_compare_does() {
 }
 
 #[test]
-fn a_level_of_a_thin_sheet_is_not_the_run_to_it_because_only_the_coarsest_is_unfolded() {
+fn every_level_of_a_thin_sheet_keeps_its_folds() {
     // Two layers that lie on each other fold when few faces are left.
     let dir = folder();
     let mut sheet = generate::torus(1.0, 0.4, 40, 20).into_parts();
@@ -179,7 +174,7 @@ fn a_level_of_a_thin_sheet_is_not_the_run_to_it_because_only_the_coarsest_is_unf
 }
 
 #[test]
-fn a_level_that_was_not_reached_counts_as_if_it_were() {
+fn a_level_that_was_not_reached_does_not_count() {
     let dir = folder();
     put(&dir, "in.ply", &generate::torus(1.0, 0.4, 12, 8));
     let words = [
@@ -214,7 +209,7 @@ fn a_level_that_was_not_reached_counts_as_if_it_were() {
 }
 
 #[test]
-fn a_mesh_that_is_nothing_once_it_is_welded_is_an_internal_error_or_leaves_a_folder() {
+fn a_mesh_that_is_nothing_once_it_is_welded_is_refused_and_leaves_no_folder() {
     let dir = folder();
     let file = dir.path().join("in.obj");
     fs::write(file, "v 0 0 0\nv 1 0 0\nf 1 1 2\n").expect("writes");
@@ -227,7 +222,7 @@ fn a_mesh_that_is_nothing_once_it_is_welded_is_an_internal_error_or_leaves_a_fol
 }
 
 #[test]
-fn damaged_weights_are_found_only_after_other_methods_have_run() {
+fn damaged_weights_are_found_before_any_method_runs() {
     let dir = scene();
     fs::write(dir.path().join("weights.bin"), b"LODMVISI").expect("writes");
     let words = ["levels", "in.ply", "out", "--visibility", "weights.bin"];
@@ -290,7 +285,7 @@ fn levels_without_sense_are_refused_before_anything_is_made() {
 }
 
 #[test]
-fn what_nobody_sees_of_an_engine_costs_as_much_image_error_as_without_visibility() {
+fn an_engine_costs_less_image_error_where_visibility_is_known() {
     let dir = folder();
     put(&dir, "in.ply", &generate::engine(1));
     let words = [

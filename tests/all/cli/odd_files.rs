@@ -10,10 +10,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{
-    support::code, support::expect, support::folder, support::lodmark, support::put,
-    support::stderr, support::stdout,
-};
+use crate::support::{code, expect, folder, lodmark, put, stderr, stdout};
 
 const TORUS: [&str; 4] = ["simplify", "torus.ply", "out.ply", "--triangles"];
 

@@ -1,21 +1,13 @@
 //! The commands `visibility` and `merge-visibility`.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use lodmark::{io, mesh::generate};
 
-use crate::{
-    support::code, support::expect, support::folder, support::lodmark, support::put,
-    support::stdout,
-};
-
-fn json(path: &Path) -> serde_json::Value {
-    let text = fs::read_to_string(path).expect("a report");
-    serde_json::from_str(&text).expect("JSON")
-}
+use crate::support::{code, expect, folder, json, lodmark, put, stdout};
 
 #[test]
-fn the_report_lacks_a_key_that_scripts_rely_on() {
+fn the_report_has_every_key_that_scripts_rely_on() {
     let dir = folder();
     put(&dir, "in.ply", &generate::shells(2, 2));
     let output = lodmark(
@@ -39,7 +31,7 @@ fn the_report_lacks_a_key_that_scripts_rely_on() {
         said.contains("V(M)") && said.contains("never seen"),
         "{said}"
     );
-    let report = json(&dir.path().join("r.json"));
+    let report = json(&dir, "r.json");
     assert_eq!(report["schema"], 1);
     assert_eq!(report["command"], "visibility");
     assert_eq!(report["cameras"], 18);
@@ -60,7 +52,7 @@ fn the_report_lacks_a_key_that_scripts_rely_on() {
 }
 
 #[test]
-fn views_on_several_machines_give_another_file_than_on_one() {
+fn views_on_several_machines_give_the_file_of_one() {
     let dir = folder();
     put(&dir, "in.ply", &generate::torus(1.0, 0.4, 16, 8));
     let common = ["visibility", "in.ply", "--cameras", "18", "--size", "32"];
@@ -88,7 +80,7 @@ fn views_on_several_machines_give_another_file_than_on_one() {
             "m.json",
         ],
     );
-    assert_eq!(json(&dir.path().join("m.json"))["complete"], true);
+    assert_eq!(json(&dir, "m.json")["complete"], true);
     let bytes = |name: &str| fs::read(dir.path().join(name)).expect("a file");
     assert_eq!(bytes("sum.vis"), bytes("all.vis"));
     expect(
@@ -103,7 +95,7 @@ fn views_on_several_machines_give_another_file_than_on_one() {
             "from.json",
         ],
     );
-    let [direct, from] = ["direct.json", "from.json"].map(|name| json(&dir.path().join(name)));
+    let [direct, from] = ["direct.json", "from.json"].map(|name| json(&dir, name));
     assert_eq!(direct["v_mesh"], from["v_mesh"]);
     let said = expect(
         &dir,
@@ -128,7 +120,7 @@ fn views_on_several_machines_give_another_file_than_on_one() {
 }
 
 #[test]
-fn the_order_of_triangles_in_the_file_changes_the_answer() {
+fn no_order_of_triangles_in_the_file_changes_the_answer() {
     let dir = folder();
     let mesh = generate::interlocking_tori(10, 6);
     put(&dir, "a.ply", &mesh);
@@ -201,12 +193,12 @@ fn every_product_is_written_at_once() {
     assert!(csv.starts_with("cameras,error,v_mesh\n6,"), "{csv}");
     let svg = fs::read_to_string(dir.path().join("figure.svg")).expect("written");
     assert!(svg.starts_with("<svg") && svg.contains("4098"));
-    assert_eq!(json(&dir.path().join("r.json"))["triangles_kept"], 80);
+    assert_eq!(json(&dir, "r.json")["triangles_kept"], 80);
     assert!(dir.path().join("p.vis").exists());
 }
 
 #[test]
-fn requests_that_make_no_sense_begin_long_work() {
+fn requests_that_make_no_sense_begin_no_work() {
     let dir = folder();
     put(&dir, "in.ply", &generate::cube());
     for words in [
@@ -240,7 +232,7 @@ fn requests_that_make_no_sense_begin_long_work() {
 }
 
 #[test]
-fn a_figure_takes_the_name_of_another() {
+fn no_figure_takes_the_name_of_another() {
     let dir = folder();
     put(&dir, "in.ply", &generate::cube());
     fs::write(dir.path().join("cube-0.csv"), "mine").expect("writes");
@@ -259,7 +251,7 @@ fn a_figure_takes_the_name_of_another() {
 }
 
 #[test]
-fn counts_of_another_version_are_taken_as_if_they_were_of_this_one() {
+fn counts_of_another_version_are_refused() {
     use sha2::{Digest, Sha256};
     let dir = folder();
     put(&dir, "in.ply", &generate::cube());

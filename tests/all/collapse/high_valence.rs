@@ -24,7 +24,7 @@ use lodmark::{
 };
 
 use crate::{
-    collapse::engine::Dice, collapse::engine::assert_consistent, collapse::engine::groups,
+    collapse::engine::{Dice, assert_consistent, groups},
     support::Random,
 };
 

@@ -12,7 +12,10 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{collapse::engine::Dice, collapse::engine::groups, support::meshes};
+use crate::{
+    collapse::engine::{Dice, groups},
+    support::meshes,
+};
 
 /// Faces linked through edges at whose ends both have the same texture coordinates are one chart.
 fn charts(mesh: &Mesh) -> usize {

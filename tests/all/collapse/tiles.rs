@@ -13,7 +13,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::meshes;
+use crate::support::{meshes, same_on_all_threads};
 
 /// Small enough that a mesh of a few hundred triangles takes several rounds.
 const SMALL: Tiling = Tiling {
@@ -97,14 +97,7 @@ proptest! {
 fn thread_counts_give_equal_tiles() {
     let mesh = shape(false, 4);
     for run in [memoryless, quadric] {
-        let results: Vec<_> = [1, 2, 3, 8]
-            .map(|threads| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                pool.expect("a pool").install(|| run(&mesh, 30))
-            })
-            .into_iter()
-            .collect();
-        assert!(results.windows(2).all(|pair| pair[0] == pair[1]));
+        same_on_all_threads(|| run(&mesh, 30));
     }
 }
 

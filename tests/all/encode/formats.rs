@@ -16,10 +16,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-/// A folder that is removed with everything in it.
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
-}
+use crate::support::folder;
 
 fn file_with(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder.path().join(name);

@@ -1,6 +1,6 @@
 //! Files in and out: what survives, and what is said about the rest.
 
-use std::{fs, path::PathBuf};
+use std::fs;
 
 use glam::DVec3;
 use lodmark::{
@@ -11,6 +11,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use super::readers::{SQUARE, obj};
+use crate::support::{folder, read_model};
 
 /// Every attribute value of every corner, by channel; NaN as one value.
 pub(crate) fn corner_values(mesh: &Mesh) -> Vec<(ChannelKind, Vec<u64>)> {
@@ -62,10 +63,6 @@ fn square() -> Mesh {
     obj(&format!("{SQUARE}f 1 2 3\nf 1 3 4\n"))
         .expect("valid")
         .mesh
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
 }
 
 #[test]
@@ -397,7 +394,7 @@ fn meshes() -> impl Strategy<Value = Mesh> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::support::cases(300))]
 
     #[test]
     fn reading_what_was_written_changes_no_bit(mesh in meshes()) {
@@ -438,22 +435,6 @@ proptest! {
     }
 }
 
-fn model(name: &str) -> Option<io::Loaded> {
-    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
-        PathBuf::from,
-    );
-    let path = folder.join(name);
-    if !path.exists() {
-        #[expect(clippy::print_stderr, reason = "the reason for skipping")]
-        {
-            eprintln!("skipped: {} is not there", path.display());
-        }
-        return None;
-    }
-    Some(io::read(&path).expect("a good file"))
-}
-
 #[test]
 fn real_models_have_their_published_sizes() {
     for (name, vertices, triangles) in [
@@ -461,7 +442,9 @@ fn real_models_have_their_published_sizes() {
         ("dragon.ply", 437_645, 871_414),
         ("spot.obj", 2_930, 5_856),
     ] {
-        let Some(loaded) = model(name) else { continue };
+        let Some(loaded) = read_model(name) else {
+            continue;
+        };
         assert_eq!(loaded.mesh.positions().len(), vertices, "{name}");
         assert_eq!(loaded.mesh.triangles().len(), triangles, "{name}");
         assert_eq!(loaded.mesh.precision(), Precision::F32, "{name}");
@@ -470,7 +453,7 @@ fn real_models_have_their_published_sizes() {
 
 #[test]
 fn a_textured_model_is_what_tobj_alone_makes_of_it() {
-    let Some(loaded) = model("spot.obj") else {
+    let Some(loaded) = read_model("spot.obj") else {
         return;
     };
     let (bytes, notes) = io::encode(&loaded.mesh, Encoding::Obj).expect("writes");

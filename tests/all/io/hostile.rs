@@ -218,7 +218,7 @@ fn formats() -> impl Strategy<Value = Format> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::support::cases(2000))]
 
     #[test]
     fn random_bytes_are_never_a_panic(format in formats(), bytes in prop::collection::vec(any::<u8>(), 0..300)) {

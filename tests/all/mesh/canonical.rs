@@ -282,7 +282,7 @@ fn surface(mesh: &Mesh) -> Vec<([Corner; 3], Option<String>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::support::cases(500))]
 
     #[test]
     fn shuffled_meshes_have_one_canonical_form(

@@ -1,14 +1,10 @@
 //! What is found in a mesh, against counting by hand.
 
-use std::path::PathBuf;
-
-use lodmark::{
-    io,
-    mesh::{Findings, Mesh, canonical},
-};
+use lodmark::mesh::{Findings, Mesh, canonical};
 use proptest::prelude::*;
 
 use super::canonical::{FACES, TETRAHEDRON, mesh, soups};
+use crate::support::read_model;
 
 #[test]
 fn a_closed_tetrahedron_is_clean() {
@@ -124,7 +120,7 @@ fn examples_end_at_five_and_the_count_does_not() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::support::cases(500))]
 
     #[test]
     fn findings_agree_with_counting_by_hand(soup in soups()) {
@@ -183,19 +179,10 @@ proptest! {
 
 #[test]
 fn real_models_have_their_published_boundaries() {
-    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
-        PathBuf::from,
-    );
-    let path = folder.join("bunny.ply");
-    if !path.exists() {
-        #[expect(clippy::print_stderr, reason = "the reason for skipping")]
-        {
-            eprintln!("skipped: {} is not there", path.display());
-        }
+    let Some(loaded) = read_model("bunny.ply") else {
         return;
-    }
-    let bunny = io::read(&path).expect("a good file").mesh;
+    };
+    let bunny = loaded.mesh;
     let found = Findings::of(&bunny);
     assert_eq!(
         (found.boundary_edges, found.boundary_loops),

@@ -370,6 +370,8 @@ fn random_numbers_are_those_of_the_published_generator() {
 }
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn any_parameters_give_a_valid_closed_mesh(
         (around, across, count) in (0_u32..40, 0_u32..40, 0_u32..6), level in 0_u32..4,

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Silent,
+    Error, Silent,
     mesh::{Mesh, generate},
     metric::{
         appearance::{Appearance, appearance, pictures},
@@ -17,6 +17,8 @@ use lodmark::{
     view::{Cull, Interpolation, Shading, Sphere, ViewSet, directions, frame_of},
 };
 use proptest::prelude::*;
+
+use crate::support::{Impatient, Random, same_on_all_threads};
 
 /// Small views around a mesh, in its units.
 fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
@@ -30,7 +32,7 @@ fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
 
 /// `mesh` with every vertex moved by up to `by`, each its own way.
 pub(crate) fn shaken(mesh: &Mesh, by: f64) -> Mesh {
-    let mut random = generate::Pcg32::new(7, 1);
+    let mut random = Random::new(7, 1);
     let mut moved = || (random.unit() - 0.5) * 2.0 * by;
     let positions = mesh
         .positions()
@@ -124,13 +126,8 @@ fn no_number_of_threads_changes_a_judgement() {
     let mesh = generate::torus(1.0, 0.4, 256, 80);
     let scenes = [shaken(&mesh, 0.01), generate::icosphere(2)].map(|m| Scene::of(&m));
     let (reference, views) = (Scene::of(&mesh), views(&mesh, 48, 2));
-    let judged = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads")
-            .install(|| appearance(&reference, &scenes, &views, &Silent).expect("finite"))
-    };
-    let one = judged(1);
-    assert!([2, 3, 8].into_iter().all(|threads| judged(threads) == one));
+    let one =
+        same_on_all_threads(|| appearance(&reference, &scenes, &views, &Silent).expect("finite"));
     // Candidates that are judged together do not see each other.
     for (scene, found) in scenes.iter().zip(&one) {
         let alone = appearance(&reference, std::slice::from_ref(scene), &views, &Silent);
@@ -191,20 +188,13 @@ fn a_vertex_out_of_this_world_is_refused_with_a_hint_at_units() {
 
 #[test]
 fn an_interruption_ends_a_judgement() {
-    struct Stop;
-    impl Progress for Stop {
-        fn report(&self, _: &str, _: u64, _: u64) {}
-        fn interrupted(&self) -> bool {
-            true
-        }
-    }
     let mesh = generate::cube();
     let scene = Scene::of(&mesh);
     let found = appearance(
         &scene,
         std::slice::from_ref(&scene),
         &views(&mesh, 16, 1),
-        &Stop,
+        &Impatient,
     );
     assert!(matches!(found, Err(Error::Interrupted)));
 }

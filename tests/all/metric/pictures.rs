@@ -35,6 +35,8 @@ fn pair() -> impl Strategy<Value = (Grid<u16>, Grid<u16>)> {
 }
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn the_squared_error_is_the_sum_of_squares_pixel_by_pixel((a, b) in pair()) {
         let error = squared_error(&a, &b, 4).expect("same size");
@@ -259,6 +261,8 @@ fn a_boundary_edge_is_a_silhouette_from_both_sides_but_not_from_within_its_plane
 }
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn silhouettes_are_closed_curves_and_know_no_winding(
         shape in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f32), 8),

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Result, Silent,
+    Error, Result, Silent,
     mesh::{Mesh, MeshParts},
     metric::{
         closest_point,
@@ -16,6 +16,8 @@ use lodmark::{
     num::Precision,
 };
 use proptest::prelude::*;
+
+use crate::support::{Impatient, same_on_all_threads};
 
 fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     Mesh::new(MeshParts {
@@ -232,14 +234,7 @@ fn what_cannot_be_measured_is_an_error() {
 
 #[test]
 fn an_interruption_ends_the_measurement() {
-    struct Stop;
-    impl Progress for Stop {
-        fn report(&self, _: &str, _: u64, _: u64) {}
-        fn interrupted(&self) -> bool {
-            true
-        }
-    }
-    let result: Result<SurfaceDistance> = surface_distance(&square(), &cube(), 10, &Stop);
+    let result: Result<SurfaceDistance> = surface_distance(&square(), &cube(), 10, &Impatient);
     assert!(matches!(result, Err(Error::Interrupted)));
 }
 
@@ -247,17 +242,7 @@ fn an_interruption_ends_the_measurement() {
 fn any_number_of_threads_gives_the_same_bits() {
     let reference = soup(&sphere(4));
     let candidate = moved(&soup(&sphere(2)), |p| p * 1.01);
-    let on = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("threads")
-            .install(|| distance(&reference, &candidate, 30_000))
-    };
-    let expected = on(1);
-    for threads in [2, 3, 8] {
-        assert_eq!(on(threads), expected, "{threads} threads");
-    }
+    same_on_all_threads(|| distance(&reference, &candidate, 30_000));
 }
 
 #[test]
@@ -300,6 +285,7 @@ fn triangle() -> impl Strategy<Value = [DVec3; 3]> {
 
 proptest! {
     #![proptest_config(crate::support::cases(2000))]
+
     #[test]
     fn the_closest_point_meets_the_conditions_of_the_minimum(
         t in triangle(),
@@ -329,6 +315,7 @@ proptest! {
 
 proptest! {
     #![proptest_config(crate::support::cases(64))]
+
     #[test]
     fn large_and_small_triangles_count_by_their_area(
         x in 0.01..0.99_f64,

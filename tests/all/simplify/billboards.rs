@@ -16,12 +16,11 @@ use glam::{DVec2, DVec3};
 use lodmark::{
     Silent,
     bound::{planar::Aperture, view_cell::ViewCell},
-    mesh::{
-        Mesh,
-        generate::{self, Pcg32},
-    },
+    mesh::{Mesh, generate},
     simplify::billboards::{Cloud, Limit, Options, Quad, Up, billboards},
 };
+
+use crate::support::{Random, same_on_all_threads};
 
 fn within(degrees: f64) -> Options {
     let aperture = Aperture::degrees(degrees).expect("below 90");
@@ -79,7 +78,7 @@ fn viewers(cell: &str) -> Vec<DVec2> {
     }
 }
 
-fn sampled(mesh: &Mesh, t: u32, random: &mut Pcg32, count: usize) -> Vec<DVec3> {
+fn sampled(mesh: &Mesh, t: u32, random: &mut Random, count: usize) -> Vec<DVec3> {
     let [a, b, c] = mesh.corners(t as usize);
     let mut points = vec![a, b, c];
     for _ in 0..count {
@@ -95,8 +94,8 @@ fn sampled(mesh: &Mesh, t: u32, random: &mut Pcg32, count: usize) -> Vec<DVec3> 
 }
 
 #[test]
-fn a_viewer_sees_a_point_displaced_by_more_than_the_angle() {
-    let mut random = Pcg32::new(2007, 400);
+fn no_viewer_sees_a_point_displaced_by_more_than_the_angle() {
+    let mut random = Random::new(2007, 400);
     let around =
         ViewCell::cuboid(DVec3::new(-9.0, -12.0, 0.0), DVec3::new(9.0, -4.0, 3.0)).expect("a box");
     let scenes = [
@@ -136,7 +135,7 @@ fn a_viewer_sees_a_point_displaced_by_more_than_the_angle() {
 }
 
 #[test]
-fn a_texel_shows_a_point_that_belongs_elsewhere() {
+fn every_texel_shows_a_point_that_belongs_there() {
     let cell = in_the_forest();
     let mesh = generate::trees(300, 100.0);
     let cloud = cloud(&mesh, &cell, &within(0.5));
@@ -208,7 +207,7 @@ fn behind([a, b, c]: [DVec3; 3], at: DVec3, axis: DVec3) -> Option<DVec3> {
 }
 
 #[test]
-fn a_triangle_is_lost_or_shown_by_two_quads_for_its_own() {
+fn every_triangle_is_shown_by_one_quad_for_its_own() {
     let around =
         ViewCell::cuboid(DVec3::new(1.0, 1.0, 0.0), DVec3::new(3.0, 9.0, 3.0)).expect("a box");
     for (mesh, cell) in [
@@ -249,7 +248,7 @@ fn a_triangle_is_lost_or_shown_by_two_quads_for_its_own() {
 }
 
 #[test]
-fn the_city_needs_more_quads_than_the_published_one() {
+fn the_city_needs_no_more_quads_than_the_published_one() {
     let aperture = Aperture::degrees(0.1).expect("below 90");
     let mut options = Options::within(Limit::Angle(aperture));
     let city = generate::city();
@@ -273,7 +272,7 @@ fn the_city_needs_more_quads_than_the_published_one() {
 }
 
 #[test]
-fn without_tolerance_anything_is_displaced() {
+fn without_tolerance_nothing_is_displaced() {
     let mesh = blocks(30);
     let cloud = cloud(&mesh, &before_the_city(), &within(0.0));
     for quad in &cloud.quads {
@@ -292,7 +291,7 @@ fn without_tolerance_anything_is_displaced() {
 }
 
 #[test]
-fn a_wide_angle_is_refused_or_needs_more_quads() {
+fn a_wider_angle_needs_no_more_quads() {
     let mesh = blocks(30);
     let counts =
         [0.1, 1.0, 10.0, 89.0].map(|t| cloud(&mesh, &before_the_city(), &within(t)).quads.len());
@@ -303,7 +302,7 @@ fn a_wide_angle_is_refused_or_needs_more_quads() {
 }
 
 #[test]
-fn what_viewers_stand_in_is_moved() {
+fn what_viewers_stand_in_is_not_moved() {
     let mesh = blocks(10);
     let cell =
         ViewCell::cuboid(DVec3::new(-1.0, 0.5, 0.0), DVec3::new(0.8, 0.9, 2.0)).expect("a box");
@@ -325,7 +324,7 @@ fn what_viewers_stand_in_is_moved() {
 }
 
 #[test]
-fn a_slope_over_viewers_without_a_width_is_moved_through_them() {
+fn a_slope_over_viewers_without_a_width_is_not_moved_through_them() {
     let plate = |z: [f64; 4]| {
         let at = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let corners = (0..4).map(|i| DVec3::new(at[i][0], at[i][1], z[i]));
@@ -353,7 +352,7 @@ fn a_slope_over_viewers_without_a_width_is_moved_through_them() {
 }
 
 #[test]
-fn a_cell_that_covers_the_ground_is_taken() {
+fn a_cell_that_covers_the_ground_is_refused() {
     let mesh = blocks(2);
     let above = ViewCell::half_space(DVec3::new(0.0, 0.0, 20.0), DVec3::new(0.0, 0.0, -1.0))
         .expect("a normal");
@@ -382,7 +381,7 @@ fn a_cell_that_covers_the_ground_is_taken() {
 }
 
 #[test]
-fn a_face_without_area_ends_the_run() {
+fn a_face_without_area_does_not_end_the_run() {
     let positions = [
         [0.0, 5.0, 0.0],
         [0.0, 5.0, 1.0],
@@ -416,22 +415,14 @@ fn a_face_without_area_ends_the_run() {
 }
 
 #[test]
-fn the_number_of_threads_changes_a_cloud() {
+fn no_number_of_threads_changes_a_cloud() {
     let mesh = generate::trees(500, 150.0);
-    let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("threads");
-        pool.install(|| cloud(&mesh, &in_the_forest(), &within(0.2)))
-    };
-    let one = on(1);
-    assert_eq!(one, on(3));
+    let one = same_on_all_threads(|| cloud(&mesh, &in_the_forest(), &within(0.2)));
     assert!(one.quads.iter().any(|q| q.replaces.len() > 6));
 }
 
 #[test]
-fn another_axis_up_gives_another_cloud() {
+fn another_axis_up_gives_the_same_cloud() {
     let mesh = blocks(20);
     let turned = |turn: fn(DVec3) -> DVec3| {
         Mesh::from_triangles(
@@ -460,7 +451,7 @@ fn another_axis_up_gives_another_cloud() {
 }
 
 #[test]
-fn a_distance_displaces_by_more() {
+fn no_point_is_displaced_by_more_than_a_distance() {
     let mesh = blocks(60);
     let options = Options {
         limit: Limit::Distance(0.02),
@@ -478,7 +469,7 @@ fn a_distance_displaces_by_more() {
 }
 
 #[test]
-fn three_walls_at_one_edge_are_taken_for_a_surface() {
+fn three_walls_at_one_edge_are_not_taken_for_a_surface() {
     // A non-manifold edge, a wall that stands twice in the mesh, and one turned the other way.
     let positions = [
         [0.0, 5.0, 0.0],

@@ -19,18 +19,15 @@ use lodmark::{
 };
 
 use crate::{
-    simplify::image::error, simplify::image::reference, simplify::image::view_sets,
-    simplify::polish::pushed,
+    simplify::{
+        image::{error, reference, view_sets},
+        polish::pushed,
+    },
+    support::faces,
 };
 
 /// Vertices searched against the same pictures: a change is weighed by the error of one of so many moments before.
 const BATCH: usize = 16;
-
-fn faces(mesh: &Mesh) -> Vec<[DVec3; 3]> {
-    (0..mesh.triangles().len())
-        .map(|t| mesh.corners(t))
-        .collect()
-}
 
 /// Area times mean distance of centroid and midpoints from the nearest of all faces.
 fn deviation(original: &[[DVec3; 3]], mesh: &Mesh) -> f64 {

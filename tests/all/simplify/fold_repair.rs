@@ -9,7 +9,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::meshes;
+use crate::support::{meshes, on_threads};
 
 fn methods(triangles: u64) -> [Options; 2] {
     let target = Amount::Triangles(triangles);
@@ -99,7 +99,7 @@ fn join(triangles: &mut Vec<[u32; 3]>, below: &[u32], above: &[u32]) {
 }
 
 #[test]
-fn a_handle_that_was_flattened_stays_folded() {
+fn a_handle_that_was_flattened_is_unfolded() {
     let mesh = handles(4);
     let mut before = [0; 2];
     for level in [1000, 700, 500, 400, 300] {
@@ -116,7 +116,7 @@ fn a_handle_that_was_flattened_stays_folded() {
 }
 
 #[test]
-fn a_fold_of_the_original_is_opened() {
+fn a_fold_of_the_original_is_kept() {
     // A sheet that lies on itself, but for the width of a hair.
     let sheet = generate::grid(16, 16, generate::Height::Waves);
     let fold = |p: &DVec3| {
@@ -134,7 +134,7 @@ fn a_fold_of_the_original_is_opened() {
 }
 
 #[test]
-fn a_repair_is_asked_for_where_others_guard_against_folds() {
+fn no_repair_is_asked_for_where_others_guard_against_folds() {
     let target = Amount::Triangles(10);
     for options in methods(10) {
         assert!(options.unfold);
@@ -147,7 +147,7 @@ proptest! {
     #![proptest_config(crate::support::cases(48))]
 
     #[test]
-    fn a_repair_makes_faults_or_is_not_in_the_history(
+    fn every_repair_makes_no_faults_and_is_in_the_history(
         kind in 0_usize..8, seed: u64, share in 0.05..0.6,
     ) {
         let mesh = meshes::any(kind, seed);
@@ -162,8 +162,7 @@ proptest! {
             if faults(&mesh, &plain.mesh) == [0, 0] {
                 prop_assert_eq!(faults(&mesh, &outcome.mesh), [0, 0]);
             }
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads");
-            let other = pool.install(|| run(&mesh, &options, true));
+            let other = on_threads(3, || run(&mesh, &options, true));
             prop_assert_eq!(other.mesh, outcome.mesh);
         }
     }

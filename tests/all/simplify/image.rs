@@ -21,6 +21,8 @@ use lodmark::{
     },
 };
 
+use crate::support::same_on_all_threads;
+
 /// The method, remembering what it was about to commit.
 struct Watched {
     inner: ImageDriven<BucketEngine>,
@@ -357,20 +359,10 @@ fn options(triangles: u64) -> Options {
 #[test]
 fn no_number_of_threads_changes_the_result() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
-    let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a pool");
-        let outcome = pool
-            .install(|| simplify::simplify(&mesh, &options(200), &Silent))
-            .expect("simplified");
+    same_on_all_threads(|| {
+        let outcome = simplify::simplify(&mesh, &options(200), &Silent).expect("simplified");
         (outcome.mesh, outcome.history.to_bytes(), outcome.phases)
-    };
-    let one = run(1);
-    for threads in [2, 3, 8] {
-        assert!(run(threads) == one, "{threads} threads");
-    }
+    });
 }
 
 #[test]

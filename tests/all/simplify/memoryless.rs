@@ -14,7 +14,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{support::Random, support::meshes};
+use crate::support::{Random, meshes};
 
 pub(crate) const U: DVec3 = DVec3::new(0.0, 0.0, 0.3);
 pub(crate) const W: DVec3 = DVec3::new(1.0, 0.0, 0.1);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Silent,
+    Error, Silent,
     collapse::{
         Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star, flip,
         unfolded,
@@ -25,8 +25,8 @@ use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::{
-    simplify::image::error, simplify::image::meshes, simplify::image::reference,
-    simplify::image::view_sets, support::meshes,
+    simplify::image::{error, meshes, reference, view_sets},
+    support::{StopsAfter, meshes, same_on_all_threads},
 };
 
 const THREE: Polish = Polish {
@@ -279,19 +279,11 @@ fn faces_at_edges(mesh: &Mesh) -> Vec<usize> {
 fn no_number_of_threads_changes_what_polishing_does() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     for kind in 0..3 {
-        let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .expect("a pool");
-            let outcome = pool.install(|| run(&mesh, 150, shading(kind)));
+        same_on_all_threads(|| {
+            let outcome = run(&mesh, 150, shading(kind));
             assert!(outcome.polish.as_ref().is_some_and(|p| p.moves > 20));
             (outcome.mesh, outcome.history.to_bytes(), outcome.polish)
-        };
-        let one = on(1);
-        for threads in [2, 3, 8] {
-            assert!(on(threads) == one, "{threads} threads");
-        }
+        });
     }
 }
 
@@ -325,29 +317,13 @@ fn a_locked_vertex_stays_where_it_is() {
     }
 }
 
-/// Stops after so many looks.
-struct Impatient(std::sync::atomic::AtomicU32);
-
-impl Progress for Impatient {
-    fn report(&self, phase: &str, done: u64, total: u64) {
-        assert!(total == 0 || done <= total, "{phase}: {done} of {total}");
-        if phase == "polish" {
-            self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        }
-    }
-
-    fn interrupted(&self) -> bool {
-        self.0.load(std::sync::atomic::Ordering::Relaxed) > 3
-    }
-}
-
 #[test]
 fn polishing_can_be_interrupted() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     let stopped = simplify(
         &mesh,
         &options(150, DrivingShading::Flat),
-        &Impatient(0.into()),
+        &StopsAfter::new("polish", 4),
     );
     assert!(matches!(stopped, Err(Error::Interrupted)));
 }

@@ -13,8 +13,8 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
-    simplify::memoryless::U, simplify::memoryless::W, simplify::memoryless::interior,
-    support::Random, support::meshes,
+    simplify::memoryless::{U, W, interior},
+    support::{Random, meshes},
 };
 
 fn options(weighting: Weighting) -> QuadricOptions {

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Progress, Silent,
+    Silent,
     bound::tolerance::Source,
     collapse::{Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Ring, Rules, Site},
     mesh::{Mesh, canonical, content_sha256, generate},
@@ -18,7 +18,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{bound::envelope::distance, bound::envelope::lattice, support::meshes};
+use crate::support::{Impatient, distance, faces, lattice, meshes, same_on_all_threads};
 
 fn within(mesh: &Mesh, own: ToleranceOptions) -> Outcome {
     let options = Options::tolerance(own, Amount::ErrorOnly);
@@ -29,14 +29,8 @@ fn share(error: f64) -> ToleranceOptions {
     ToleranceOptions::new(Distance::OfDiagonal(error))
 }
 
-fn corners(mesh: &Mesh) -> Vec<[DVec3; 3]> {
-    (0..mesh.triangles().len())
-        .map(|t| mesh.corners(t))
-        .collect()
-}
-
 fn diagonal(mesh: &Mesh) -> f64 {
-    let points = || corners(mesh).into_iter().flatten();
+    let points = || faces(mesh).into_iter().flatten();
     let low = points().reduce(DVec3::min).expect("not empty");
     let high = points().reduce(DVec3::max).expect("not empty");
     (high - low).length()
@@ -44,9 +38,9 @@ fn diagonal(mesh: &Mesh) -> f64 {
 
 /// The largest sampled distance from the points of a surface to another one.
 fn farthest(from: &Mesh, to: &Mesh, steps: u32) -> f64 {
-    let all = corners(to);
+    let all = faces(to);
     let mut most: f64 = 0.0;
-    for triangle in corners(from) {
+    for triangle in faces(from) {
         for p in lattice(triangle, steps) {
             let distances = all.iter().map(|&t| distance(p, t));
             most = most.max(distances.fold(f64::INFINITY, f64::min));
@@ -93,7 +87,7 @@ proptest! {
         let mut live = LiveMesh::new(&mesh, Frame::default());
         let mut method = ToleranceMethod::new(&live, self::share(share)).expect("a bound");
         let bound = share * diagonal(&mesh);
-        let original = corners(&mesh);
+        let original = faces(&mesh);
         let mut random = crate::support::Random(seed);
         let (mut ring, mut patch, mut changes) = (Ring::default(), Patch::default(), Changes::default());
         for _ in 0..15 {
@@ -157,13 +151,10 @@ fn no_number_of_threads_changes_a_bounded_result() {
             ..share(0.03)
         },
     ] {
-        let run = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let outcome = pool.expect("threads").install(|| within(&mesh, own));
+        same_on_all_threads(|| {
+            let outcome = within(&mesh, own);
             (content_sha256(&outcome.mesh), outcome.phases)
-        };
-        let one = run(1);
-        assert!([2, 3, 8].into_iter().all(|threads| run(threads) == one));
+        });
     }
 }
 
@@ -359,17 +350,6 @@ fn a_mesh_far_from_the_origin_or_of_another_size_is_bounded_as_well() {
             farthest(&mesh, &outcome.mesh, 5) <= bound,
             "size {size}, shift {shift}"
         );
-    }
-}
-
-/// Asks to stop when collapses have begun.
-struct Impatient;
-
-impl Progress for Impatient {
-    fn report(&self, _: &str, _: u64, _: u64) {}
-
-    fn interrupted(&self) -> bool {
-        true
     }
 }
 

@@ -17,7 +17,7 @@ use lodmark::{
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
-use crate::{support::bounded, support::expect, support::folder, support::meshes, support::put};
+use crate::support::{bounded, expect, folder, meshes, put, same_on_all_threads};
 
 fn run_to(mesh: &Mesh, cell: &ViewCell, degrees: f64, target: Amount) -> Outcome {
     let own = ViewBoundedOptions::new(cell.clone(), degrees);
@@ -281,19 +281,13 @@ proptest! {
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     let mesh = canonical(&generate::torus(1.0, 0.4, 24, 16)).mesh;
-    let results: Vec<Vec<u8>> = [1, 2, 3]
-        .map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let outcome = pool
-                .expect("threads")
-                .install(|| run(&mesh, &cells()[2], 0.3));
-            let mut bytes = outcome.history.to_bytes();
-            let map = outcome.correspondence.expect("this method keeps account");
-            map.write(&mesh, &outcome.mesh, &mut bytes).expect("memory");
-            bytes
-        })
-        .into();
-    assert!(results[0] == results[1] && results[0] == results[2]);
+    same_on_all_threads(|| {
+        let outcome = run(&mesh, &cells()[2], 0.3);
+        let mut bytes = outcome.history.to_bytes();
+        let map = outcome.correspondence.expect("this method keeps account");
+        map.write(&mesh, &outcome.mesh, &mut bytes).expect("memory");
+        bytes
+    });
 }
 
 #[test]

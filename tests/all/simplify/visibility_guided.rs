@@ -17,8 +17,8 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
-    simplify::memoryless::interior, simplify::memoryless::ring, support::Random, support::expect,
-    support::folder, support::meshes, support::put,
+    simplify::memoryless::{interior, ring},
+    support::{Random, expect, folder, meshes, put, same_on_all_threads},
 };
 
 fn live(mesh: &Mesh) -> LiveMesh {
@@ -329,16 +329,9 @@ proptest! {
         let mesh = meshes::any(kind, seed);
         let visibility = scattered(mesh.triangles().len(), seed ^ 2);
         let triangles = (mesh.triangles().len() as f64 * share) as usize;
-        let run = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.expect("threads").install(|| {
-                reduced(engine(&mesh, &VisibilityOptions::default(), &visibility), triangles)
-            })
-        };
-        let one = run(1);
-        for threads in [2, 3, 8] {
-            prop_assert_eq!(&run(threads), &one);
-        }
+        same_on_all_threads(|| {
+            reduced(engine(&mesh, &VisibilityOptions::default(), &visibility), triangles)
+        });
     }
 }
 

@@ -1,6 +1,7 @@
 //! Running the command as a user does.
 
 use std::{
+    fs,
     path::PathBuf,
     process::{Command, Output},
 };
@@ -59,4 +60,10 @@ pub(crate) fn put(folder: &TempDir, name: &str, mesh: &Mesh) -> PathBuf {
     let path = folder.path().join(name);
     io::write(&path, mesh).expect("writes");
     path
+}
+
+/// A JSON file of a folder.
+pub(crate) fn json(folder: &TempDir, name: &str) -> serde_json::Value {
+    let text = fs::read_to_string(folder.path().join(name)).expect("written");
+    serde_json::from_str(&text).expect("JSON")
 }

@@ -1,11 +1,22 @@
 //! What tests of several rooms use: meshes, random numbers, the command, models, oracles, property-test settings.
 
 mod command;
+mod geometry;
 pub(crate) mod meshes;
+mod models;
 pub(crate) mod oracle;
+mod progress;
 mod property;
 mod random;
+mod threads;
 
-pub(crate) use command::{code, command, expect, folder, lodmark, put, stderr, stdout};
-pub(crate) use property::{bound_cases, bound_seed, bounded, cases};
+pub(crate) use command::{code, command, expect, folder, json, lodmark, put, stderr, stdout};
+pub(crate) use geometry::{
+    at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
+};
+pub(crate) use models::{model, read_model};
+pub(crate) use oracle::say;
+pub(crate) use progress::{Impatient, StopsAfter};
+pub(crate) use property::{bound_cases, bound_count, bound_seed, bounded, cases};
 pub(crate) use random::Random;
+pub(crate) use threads::{on_threads, same_on_all_threads};

@@ -5,6 +5,8 @@ use lodmark::view::file;
 use super::*;
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn a_view_file_gives_back_every_bit(
         numbers in prop::collection::vec(-1e3..1e3, 23), exponent in -200_i32..200,
@@ -58,7 +60,7 @@ fn two_views() -> ViewSet {
 
 #[test]
 fn a_view_file_is_read_from_where_it_was_written() {
-    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+    let folder = crate::support::folder();
     let path = folder.path().join("views.json");
     let set = ViewSet::evaluation(&unit_sphere()).expect("views");
     let hash = file::ImageHashes::from([("luma".to_owned(), "00ff".to_owned())]);

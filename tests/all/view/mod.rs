@@ -5,8 +5,6 @@ mod place;
 mod sets;
 mod sphere;
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 use lodmark::{
     Error,

@@ -3,6 +3,8 @@
 use super::*;
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn every_point_of_the_sphere_is_inside_the_image_and_between_near_and_far(
         center in fine(1..2), radius in 0.5..1.0, direction in fine(1..2), at in fine(1..2),

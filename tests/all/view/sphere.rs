@@ -1,6 +1,7 @@
 //! The minimum bounding sphere and the frame it gives.
 
 use super::*;
+use crate::support::read_model;
 
 /// Half the mirror images and every cyclic permutation of a few points, zeros with either sign: distances from the middle
 /// tie in bits, but the spheres through different ones of them are rounded differently.
@@ -23,6 +24,8 @@ fn symmetric() -> impl Strategy<Value = Vec<DVec3>> {
 }
 
 proptest! {
+    #![proptest_config(crate::support::cases(256))]
+
     #[test]
     fn the_sphere_is_the_smallest_that_contains_every_point(
         points in prop_oneof![coarse(1..9), fine(1..9)],
@@ -232,52 +235,16 @@ fn the_frame_of_huge_and_tiny_meshes_brings_the_radius_into_half_to_one() {
     }
 }
 
-/// Positions of a binary PLY whose vertices are three floats and whose faces are triangles.
-#[expect(clippy::print_stdout, reason = "a skipped test says so")]
-fn read_ply(name: &str) -> Option<Mesh> {
-    let root = std::env::var_os("LODMARK_MODELS").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
-        PathBuf::from,
-    );
-    let Ok(bytes) = std::fs::read(root.join(name)) else {
-        println!("skipped: no {name} in {}", root.display());
-        return None;
-    };
-    let end = b"end_header\n";
-    let start = bytes.windows(end.len()).position(|w| w == end)? + end.len();
-    let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
-    let count = |what: &str| -> Option<usize> {
-        header
-            .split_once(what)?
-            .1
-            .split_whitespace()
-            .next()?
-            .parse()
-            .ok()
-    };
-    let (vertices, faces) = (count("element vertex")?, count("element face")?);
-    let word = |at: usize| bytes[at..at + 4].try_into().expect("four bytes");
-    let positions = (0..vertices)
-        .map(|v| {
-            DVec3::from_array(
-                [0, 4, 8].map(|o| f64::from(f32::from_le_bytes(word(start + 12 * v + o)))),
-            )
-        })
-        .collect();
-    let start = start + 12 * vertices;
-    let triangles = (0..faces)
-        .map(|f| [1, 5, 9].map(|o| u32::from_le_bytes(word(start + 13 * f + o))))
-        .collect();
-    Mesh::from_triangles(positions, triangles).ok()
-}
-
 #[test]
 fn real_scans_fit_their_sphere_which_touches_them() {
     for (name, radius) in [
         ("bunny.ply", 0.100_146_663_823_659_72),
         ("dragon.ply", 0.106_654_167_496_236_14),
     ] {
-        let Some(mesh) = read_ply(name) else { continue };
+        let Some(loaded) = read_model(name) else {
+            continue;
+        };
+        let mesh = loaded.mesh;
         let s = Sphere::of_mesh(&mesh).expect("triangles");
         assert_eq!(
             s.radius.to_bits(),

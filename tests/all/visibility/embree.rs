@@ -11,8 +11,7 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     encode::npy,
-    io,
-    mesh::{self, Mesh, generate},
+    mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
     view::{Eye, Projection, Sphere, ViewSet, directions, file, frame_of},
@@ -23,7 +22,11 @@ use lodmark::{
 };
 
 use crate::{
-    support::folder, support::oracle::embree, support::oracle::oracle, support::oracle::say,
+    support::{
+        folder, model,
+        oracle::{embree, oracle},
+        say,
+    },
     visibility::rays::framed,
 };
 
@@ -41,17 +44,6 @@ fn write_mesh(exchange: &Path, mesh: &Mesh) {
 fn write_views(exchange: &Path, set: &ViewSet) {
     let text = file::to_json(set, &[]).expect("finite views");
     fs::write(exchange.join("scene.json"), text).expect("writes");
-}
-
-/// A model, welded, if it is there.
-pub(crate) fn model(name: &str) -> Option<Mesh> {
-    let folder = std::env::var("LODMARK_MODELS").unwrap_or("../shared/models".into());
-    let path = Path::new(&folder).join(name);
-    if !path.exists() {
-        say(&format!("skipped: {} is not there", path.display()));
-        return None;
-    }
-    Some(mesh::weld(io::read(&path).expect("reads").mesh).mesh)
 }
 
 /// For every triangle the first with the same corners: where a face occurs twice, Embree hits either.
@@ -156,7 +148,7 @@ fn embree_hits_what_the_rasterizer_shows() {
 }
 
 #[test]
-fn embree_sees_through_a_planted_bug() {
+fn embree_finds_a_planted_bug() {
     let Some(packages) = embree() else {
         return;
     };

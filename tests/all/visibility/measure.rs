@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Silent, io,
+    Error, Silent,
     mesh::{self, Mesh, generate},
     num::{fixed::SubpixelBits, math},
     raster::{self, Scene},
@@ -12,6 +12,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use super::{nested, small};
+use crate::support::{Impatient, model, same_on_all_threads};
 
 /// Equation 4.3 as it is written, with pixels alone, on pictures that the raster stage draws.
 fn brute_force(mesh: &Mesh, k: u32, size: u32) -> Vec<f64> {
@@ -43,7 +44,7 @@ fn brute_force(mesh: &Mesh, k: u32, size: u32) -> Vec<f64> {
 }
 
 #[test]
-fn pixels_alone_give_another_measure_than_the_equation() {
+fn pixels_alone_give_the_measure_of_the_equation() {
     for mesh in [
         generate::torus(1.0, 0.4, 24, 12),
         generate::interlocking_tori(16, 8),
@@ -92,7 +93,7 @@ fn parallel_squares(half: f64) -> Mesh {
 }
 
 #[test]
-fn the_middle_of_a_square_under_another_sees_more_or_less_than_its_form_factor_leaves() {
+fn the_middle_of_a_square_under_another_sees_what_its_form_factor_leaves() {
     // Half side over gap, and 1 - the form factor from the centre to the other square.
     for (half, expected) in [
         (0.25, 0.926_522_365_187_478_7),
@@ -119,7 +120,7 @@ fn the_middle_of_a_square_under_another_sees_more_or_less_than_its_form_factor_l
 }
 
 #[test]
-fn a_convex_shape_hides_part_of_itself() {
+fn a_convex_shape_hides_no_part_of_itself() {
     for mesh in [
         generate::cube(),
         generate::tetrahedron(),
@@ -141,7 +142,7 @@ fn a_convex_shape_hides_part_of_itself() {
 }
 
 #[test]
-fn triangles_too_small_for_a_pixel_count_as_hidden() {
+fn triangles_too_small_for_a_pixel_do_not_count_as_hidden() {
     let mesh = generate::icosphere(5);
     let with = |unseen| {
         let options = MeasureOptions {
@@ -160,7 +161,7 @@ fn triangles_too_small_for_a_pixel_count_as_hidden() {
 }
 
 #[test]
-fn what_lies_inside_is_seen_from_outside() {
+fn what_lies_inside_is_not_seen_from_outside() {
     for subdivisions in [1, 4] {
         let (mesh, outer) = nested(subdivisions);
         for options in [
@@ -183,7 +184,7 @@ fn what_lies_inside_is_seen_from_outside() {
 }
 
 #[test]
-fn a_large_triangle_is_visible_as_a_whole_where_a_corner_of_it_is() {
+fn a_large_triangle_is_not_visible_as_a_whole_where_a_corner_of_it_is() {
     // A lid over half of a square: whole triangles are "seen" from everywhere.
     let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let positions = vec![
@@ -219,7 +220,7 @@ fn a_large_triangle_is_visible_as_a_whole_where_a_corner_of_it_is() {
 }
 
 #[test]
-fn a_part_of_a_triangle_counts_more_than_all_of_it() {
+fn a_part_of_a_triangle_counts_no_more_than_all_of_it() {
     let mesh = generate::interlocking_tori(16, 8);
     let options = small(1, 64);
     let fractional = MeasureOptions {
@@ -238,7 +239,7 @@ proptest! {
     #![proptest_config(crate::support::cases(8))]
 
     #[test]
-    fn the_way_a_triangle_is_turned_changes_its_two_sided_visibility(flips in any::<u64>()) {
+    fn the_way_a_triangle_is_turned_does_not_change_its_two_sided_visibility(flips in any::<u64>()) {
         let mesh = nested(1).0;
         let mut turned = mesh.clone().into_parts();
         for (t, corners) in turned.triangles.iter_mut().enumerate() {
@@ -259,7 +260,7 @@ proptest! {
     }
 
     #[test]
-    fn another_unit_of_length_changes_visibility(exponent in -40..100_i32) {
+    fn another_unit_of_length_changes_no_visibility(exponent in -40..100_i32) {
         // Coordinates near 1e-17 become subnormal floats, and lose bits, where the unit is below 2^-60.
         let mesh = generate::interlocking_tori(12, 6);
         let mut scaled = mesh.clone().into_parts();
@@ -274,7 +275,7 @@ proptest! {
 }
 
 #[test]
-fn shapes_of_no_size_or_area_end_badly() {
+fn shapes_of_no_size_or_area_are_measured() {
     let at = |points: &[[f64; 3]], triangles: Vec<[u32; 3]>| {
         let positions = points.iter().map(|&p| DVec3::from_array(p)).collect();
         Mesh::from_triangles(positions, triangles).expect("a mesh")
@@ -299,7 +300,7 @@ fn shapes_of_no_size_or_area_end_badly() {
 }
 
 #[test]
-fn a_needle_makes_more_pieces_than_fit_in_memory() {
+fn a_needle_of_more_pieces_than_fit_in_memory_is_refused() {
     let positions = (0..200_000).map(|i| DVec3::new(f64::from(i) * 1e-6, 0.0, f64::from(i % 2)));
     let triangles = (0..199_998).map(|i| [i, i + 1, i + 2]).collect();
     let mesh = Mesh::from_triangles(positions.collect(), triangles).expect("a mesh");
@@ -312,7 +313,7 @@ fn a_needle_makes_more_pieces_than_fit_in_memory() {
 }
 
 #[test]
-fn an_option_out_of_range_is_measured_all_the_same() {
+fn an_option_out_of_range_is_refused() {
     let default = MeasureOptions::default();
     for options in [
         MeasureOptions {
@@ -343,7 +344,7 @@ fn an_option_out_of_range_is_measured_all_the_same() {
 }
 
 #[test]
-fn the_paper_and_the_default_are_one_method() {
+fn the_paper_and_the_default_are_two_methods() {
     let (paper, default) = (MeasureOptions::paper(), MeasureOptions::default());
     assert_eq!((paper.cameras(), paper.size), (258, 480));
     assert_eq!(paper.alignment, Alignment::Axes);
@@ -357,58 +358,27 @@ fn the_paper_and_the_default_are_one_method() {
 }
 
 #[test]
-fn the_number_of_threads_changes_a_bit() {
+fn no_number_of_threads_changes_a_bit() {
     let mesh = generate::interlocking_tori(24, 12);
     let options = MeasureOptions {
         fractional: true,
         two_sided: true,
         ..small(2, 64)
     };
-    let measured = [1, 2, 3, 8].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let pool = pool.build().expect("threads");
-        pool.install(|| measure(&mesh, &options, &Silent))
-            .expect("measures")
-    });
-    for other in &measured[1..] {
-        assert_eq!(&measured[0], other);
-    }
-}
-
-struct Impatient;
-
-impl Progress for Impatient {
-    fn report(&self, phase: &str, done: u64, total: u64) {
-        assert_eq!(phase, "visibility");
-        assert!(done <= total);
-    }
-
-    fn interrupted(&self) -> bool {
-        true
-    }
+    same_on_all_threads(|| measure(&mesh, &options, &Silent).expect("measures"));
 }
 
 #[test]
-fn an_interruption_is_not_heard() {
+fn an_interruption_is_heard() {
     let stopped = measure(&generate::cube(), &MeasureOptions::default(), &Impatient);
     assert!(matches!(stopped, Err(Error::Interrupted)));
 }
 
 #[test]
-fn the_bunny_is_not_as_visible_as_was_measured_before() {
-    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
-        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
-        Into::into,
-    );
-    let path = folder.join("bunny.ply");
-    if !path.exists() {
-        #[expect(clippy::print_stderr, reason = "the reason for skipping")]
-        {
-            eprintln!("skipped: {} is not there", path.display());
-        }
+fn the_bunny_is_as_visible_as_was_measured_before() {
+    let Some(mesh) = model("bunny.ply") else {
         return;
-    }
-    let mesh = mesh::weld(io::read(&path).expect("reads").mesh).mesh;
+    };
     let mesh = mesh::canonical(&mesh).mesh;
     let paper = MeasureOptions {
         octahedron: 1,

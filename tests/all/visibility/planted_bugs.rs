@@ -10,10 +10,7 @@ use lodmark::{
     visibility::rays::{Class, RayCaster, TOLERANCE, cap},
 };
 
-use crate::{
-    visibility::rays::framed, visibility::rays::grid_set, visibility::rays::of_doubles,
-    visibility::rays::soup_of, visibility::rays::tally, visibility::rays::two_layers,
-};
+use crate::visibility::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers};
 
 /// Squares of `step` pixels whose corners are pixel centres, every fourth triangle a second time.
 fn tiles(step: usize) -> Mesh {

@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use super::{nested, small};
 
 #[test]
-fn removing_what_is_hidden_changes_a_picture() {
+fn removing_what_is_hidden_changes_no_picture() {
     let (mesh, outer) = nested(3);
     let found = measure(&mesh, &small(1, 64), &Silent).expect("measures");
     let kept = remove_hidden(&mesh, &found, 0).expect("something is seen");
@@ -41,7 +41,7 @@ proptest! {
     #![proptest_config(crate::support::cases(12))]
 
     #[test]
-    fn a_ring_more_keeps_less_or_not_the_neighbours(rings in 0..5_u32) {
+    fn a_ring_more_keeps_more_and_the_neighbours(rings in 0..5_u32) {
         let mesh = generate::torus(1.0, 0.4, 24, 12);
         // One camera looks along the axis of the first quarter of views: much is hidden.
         let options = small(0, 64);
@@ -68,7 +68,7 @@ proptest! {
 }
 
 #[test]
-fn a_ring_too_few_of_a_half_hidden_tube_stays() {
+fn as_many_rings_of_a_half_hidden_tube_stay_as_are_asked_for() {
     // A long tube along x: only its mouth is seen from its ends.
     let around = 12;
     let along = 40;
@@ -121,7 +121,7 @@ fn a_ring_too_few_of_a_half_hidden_tube_stays() {
 }
 
 #[test]
-fn attributes_and_materials_are_lost_with_the_hidden_part() {
+fn attributes_and_materials_outlive_the_hidden_part() {
     let (shells, outer) = nested(1);
     let textured = generate::textured_torus(12, 6);
     let mut parts: MeshParts = textured.clone().into_parts();
@@ -151,7 +151,7 @@ fn attributes_and_materials_are_lost_with_the_hidden_part() {
 }
 
 #[test]
-fn the_table_has_other_bits_than_the_counts() {
+fn the_table_has_the_bits_of_the_counts() {
     let mesh = generate::interlocking_tori(10, 6);
     let options = small(1, 48);
     let (survey, table) = PartialVisibility::with_table(&mesh, &options, &Silent).expect("counts");
@@ -182,7 +182,7 @@ fn the_table_has_other_bits_than_the_counts() {
 }
 
 #[test]
-fn more_cameras_bring_no_smaller_error() {
+fn more_cameras_bring_a_smaller_error() {
     let mesh = generate::interlocking_tori(8, 5);
     let options = MeasureOptions {
         edge_limit: None,
@@ -207,7 +207,7 @@ fn more_cameras_bring_no_smaller_error() {
 }
 
 #[test]
-fn a_coloured_mesh_is_read_back_as_another_one() {
+fn a_coloured_mesh_is_read_back_as_it_was() {
     for mesh in [generate::torus(1.0, 0.4, 8, 5), generate::cube()] {
         let found = measure(&mesh, &small(0, 32), &Silent).expect("measures");
         let bytes = ply::encode(&mesh, &found).expect("writes");

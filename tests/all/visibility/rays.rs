@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lodmark::{
-    Error, Progress, Silent,
+    Error, Silent,
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
     raster::{self, Grid, Scene},
@@ -11,9 +11,8 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{
-    support::code, support::expect, support::folder, support::lodmark, support::meshes,
-    support::put, support::stderr, support::stdout,
+use crate::support::{
+    Impatient, code, expect, folder, lodmark, meshes, model, put, stderr, stdout,
 };
 
 /// The views of a mesh from some of the dodecahedron's directions, and the mesh in their frame.
@@ -219,7 +218,7 @@ fn a_coarser_grid_moves_more_pixels_and_all_for_a_reason() {
 
 #[test]
 fn real_models_are_shown_as_rays_hit_them() {
-    let Some(mesh) = crate::visibility::embree::model("bunny.ply") else {
+    let Some(mesh) = model("bunny.ply") else {
         return;
     };
     let (mesh, set) = framed(
@@ -232,16 +231,6 @@ fn real_models_are_shown_as_rays_hit_them() {
     let found = check(&mesh, &set);
     assert!(found.passes(1e-4), "{:?}", found.worst);
     assert!(found.of(Class::Equal) > 8_000);
-}
-
-struct Impatient;
-
-impl Progress for Impatient {
-    fn report(&self, _: &str, _: u64, _: u64) {}
-
-    fn interrupted(&self) -> bool {
-        true
-    }
 }
 
 #[test]

@@ -22,7 +22,7 @@ proptest! {
     #![proptest_config(crate::support::cases(24))]
 
     #[test]
-    fn parts_in_another_order_or_split_sum_up_to_other_bytes(
+    fn parts_in_any_order_and_split_sum_up_to_the_same_bytes(
         cuts in prop::collection::btree_set(1..18_u32, 0..8),
         order in any::<u64>(),
         fractional in any::<bool>(),
@@ -50,7 +50,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_byte_or_a_cut_is_read_as_a_survey(at in any::<prop::sample::Index>(), bit in 0..8) {
+    fn a_changed_byte_or_a_cut_is_refused(at in any::<prop::sample::Index>(), bit in 0..8) {
         let mut bytes = part(&small(0, 16), 1..4).to_bytes();
         let at = at.index(bytes.len());
         let refused = |bytes: &[u8]| {
@@ -64,7 +64,7 @@ proptest! {
 
     /// The checksum is no secret: whoever damages a file on purpose writes another one.
     #[test]
-    fn a_file_with_a_right_checksum_may_still_break_the_reader(
+    fn no_file_with_a_right_checksum_breaks_the_reader(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         cut in any::<prop::sample::Index>(),
         cuts in any::<bool>(),
@@ -97,7 +97,7 @@ proptest! {
 }
 
 #[test]
-fn a_view_counts_twice() {
+fn no_view_counts_twice() {
     let options = small(0, 16);
     let mut sum = part(&options, 1..4);
     let before = sum.clone();
@@ -113,7 +113,7 @@ fn a_view_counts_twice() {
 }
 
 #[test]
-fn parts_that_do_not_belong_together_are_added() {
+fn parts_that_do_not_belong_together_are_refused() {
     let options = small(0, 16);
     let mut sum = part(&options, 0..3);
     let other = MeasureOptions {
@@ -137,7 +137,7 @@ fn parts_that_do_not_belong_together_are_added() {
 }
 
 #[test]
-fn a_survey_of_another_mesh_or_of_some_views_is_taken_for_complete() {
+fn a_survey_of_another_mesh_or_of_some_views_is_refused() {
     let options = small(0, 16);
     let some = part(&options, 0..5);
     assert!(!some.is_complete());
@@ -158,7 +158,7 @@ fn a_survey_of_another_mesh_or_of_some_views_is_taken_for_complete() {
 }
 
 #[test]
-fn views_that_do_not_exist_are_counted() {
+fn views_that_do_not_exist_are_refused() {
     for (start, end) in [(0, 0), (3, 2), (5, 7), (6, 7), (0, u32::MAX)] {
         let range = start..end;
         let refused = PartialVisibility::of_views(&mesh(), &small(0, 16), range.clone(), &Silent);

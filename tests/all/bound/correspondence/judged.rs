@@ -10,7 +10,7 @@ use lodmark::bound::{
 use proptest::prelude::*;
 
 use super::{Class, at, ring};
-use crate::{support::Random, support::bounded};
+use crate::support::{Random, bounded};
 
 /// What was asked about: triangle, corners, and what stands for these.
 type Heard = Vec<(u32, Vec<DVec3>, Vec<DVec3>)>;

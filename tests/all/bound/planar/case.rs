@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
-use lodmark::mesh::generate::Pcg32;
 
-use super::seen::{angle, between, largest, largest_of_two};
+use super::seen::{angle, largest, largest_of_two};
+use crate::support::Random;
 
 /// The special cases of section 5 and of appendices A to C. In the frame of one viewpoint at the origin with the
 /// direction along y, a face lies on the line y = m + x tan(g).
@@ -84,45 +84,45 @@ pub(super) fn turned(p: DVec2, turn: f64) -> DVec2 {
 }
 
 /// A case of a class, on lines across the direction.
-pub(super) fn draw(class: Class, random: &mut Pcg32) -> Case {
-    let theta = match random.bits() % 3 {
-        0 => between(random, 0.002, 0.03),
-        1 => between(random, 0.03, 0.3),
-        _ => between(random, 0.3, 1.4),
+pub(super) fn draw(class: Class, random: &mut Random) -> Case {
+    let theta = match random.next() % 3 {
+        0 => random.between(0.002, 0.03),
+        1 => random.between(0.03, 0.3),
+        _ => random.between(0.3, 1.4),
     };
-    let side = if random.bits().is_multiple_of(2) {
+    let side = if random.next().is_multiple_of(2) {
         1.0
     } else {
         -1.0
     };
-    let far = |random: &mut Pcg32| {
-        let radius = between(random, 1.0, 10.0);
-        turned(DVec2::new(radius, 0.0), between(random, 0.0, TAU))
+    let far = |random: &mut Random| {
+        let radius = random.between(1.0, 10.0);
+        turned(DVec2::new(radius, 0.0), random.between(0.0, TAU))
     };
     let (mut a, mut b) = (far(random), far(random));
     let (mut from, mut to) = (DVec2::ZERO, DVec2::ZERO);
     let mut up = DVec2::Y;
-    if random.bits().is_multiple_of(2) {
+    if random.next().is_multiple_of(2) {
         to = turned(
-            DVec2::new(between(random, 0.2, 5.0), 0.0),
-            between(random, 0.0, TAU),
+            DVec2::new(random.between(0.2, 5.0), 0.0),
+            random.between(0.0, TAU),
         );
     }
     // A face along `w`, at m over the viewpoint.
-    let along = |random: &mut Pcg32, w: DVec2, m: f64| {
-        let (s, t) = (between(random, -8.0, 8.0), between(random, -8.0, 8.0));
+    let along = |random: &mut Random, w: DVec2, m: f64| {
+        let (s, t) = (random.between(-8.0, 8.0), random.between(-8.0, 8.0));
         [DVec2::new(0.0, m) + w * s, DVec2::new(0.0, m) + w * t]
     };
-    let m = side * between(random, 0.5, 6.0);
+    let m = side * random.between(0.5, 6.0);
     let (sin, cos) = theta.sin_cos();
     match class {
         Class::Generic => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
         }
         Class::Parabola => [a, b] = along(random, DVec2::new(side * sin, cos), m),
         Class::Hyperbola => [a, b] = along(random, DVec2::new(cos, -side * sin), m),
         Class::ThroughViewpoint => {
-            let g = between(random, -1.5, 1.5);
+            let g = random.between(-1.5, 1.5);
             [a, b] = along(random, DVec2::from_angle(g), 0.0);
         }
         Class::ThroughViewpointAlongCone => {
@@ -133,11 +133,11 @@ pub(super) fn draw(class: Class, random: &mut Pcg32) -> Case {
         Class::EdgeOnThroughViewpoint => (a.x, b.x) = (0.0, 0.0),
         Class::OneTangentInside | Class::OneTangentOutside => {
             // A cell on the x-axis; by the inscribed angle the circle of `up` touches it at the half-angle.
-            let gamma = between(random, 0.0, TAU);
+            let gamma = random.between(0.0, TAU);
             up = DVec2::from_angle(gamma);
             let c = ((theta + gamma) / 2.0).tan();
-            let (low, high) = (between(random, 0.5, 3.0), between(random, 3.5, 9.0));
-            let v = between(random, -1.0, 1.0);
+            let (low, high) = (random.between(0.5, 3.0), random.between(3.5, 9.0));
+            let v = random.between(-1.0, 1.0);
             a = DVec2::new(v - c * low, low);
             b = DVec2::new(v - c * high, high);
             let shift = if class == Class::OneTangentInside {
@@ -149,42 +149,42 @@ pub(super) fn draw(class: Class, random: &mut Pcg32) -> Case {
             to = DVec2::new(shift + 2.0, 0.0);
         }
         Class::Crossing => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
-            a = DVec2::new(between(random, 4.0, 8.0), between(random, 0.5, 4.0));
-            b = DVec2::new(between(random, 4.0, 8.0), -between(random, 0.5, 4.0));
+            a = DVec2::new(random.between(4.0, 8.0), random.between(0.5, 4.0));
+            b = DVec2::new(random.between(4.0, 8.0), -random.between(0.5, 4.0));
         }
         Class::Touching => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
-            let contact = DVec2::new(between(random, 0.1, 2.9), 0.0);
-            a = contact + DVec2::new(between(random, -3.0, 3.0), between(random, 0.5, 4.0));
-            b = contact + (contact - a) * between(random, 0.1, 1.0);
+            let contact = DVec2::new(random.between(0.1, 2.9), 0.0);
+            a = contact + DVec2::new(random.between(-3.0, 3.0), random.between(0.5, 4.0));
+            b = contact + (contact - a) * random.between(0.1, 1.0);
         }
         Class::InLine => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
             (from, to) = (DVec2::ZERO, DVec2::new(3.0, 0.0));
-            a = DVec2::new(between(random, 3.5, 9.0), 0.0);
-            b = DVec2::new(between(random, 3.5, 9.0), 0.0);
+            a = DVec2::new(random.between(3.5, 9.0), 0.0);
+            b = DVec2::new(random.between(3.5, 9.0), 0.0);
         }
         Class::Point => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
             b = a;
         }
         Class::AlongCell => {
-            let axis = turned(DVec2::X, between(random, 0.0, TAU));
+            let axis = turned(DVec2::X, random.between(0.0, TAU));
             (from, to) = (DVec2::ZERO, axis * 4.0);
-            up = turned(-axis * side, between(random, -theta, theta));
+            up = turned(-axis * side, random.between(-theta, theta));
         }
         Class::ViewpointOnEnd => {
-            up = turned(up, between(random, 0.0, TAU));
+            up = turned(up, random.between(0.0, TAU));
             a = DVec2::ZERO;
         }
     }
     // The same scene somewhere else; a quarter stay where the coordinates are exact.
-    let (turn, by) = match random.bits() % 4 {
+    let (turn, by) = match random.next() % 4 {
         0 => (0.0, DVec2::ZERO),
-        _ => (between(random, 0.0, TAU), far(random) * 3.0),
+        _ => (random.between(0.0, TAU), far(random) * 3.0),
     };
     let place = |p: DVec2| if turn == 0.0 { p } else { turned(p, turn) + by };
     Case {

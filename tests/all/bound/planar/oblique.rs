@@ -5,12 +5,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
-use lodmark::mesh::generate::Pcg32;
 
 use super::{
     case::{CLASSES, Case, SCALE, draw, turned},
-    seen::{between, cases},
+    seen::cases,
 };
+use crate::support::Random;
 
 /// How the lines stand to the direction. In the frame of a viewpoint at the origin with the direction along y, their
 /// normal is y + kx.
@@ -40,10 +40,10 @@ const SLANTS: [Slant; 6] = [
 ];
 
 /// A normal of the kind, `None` where the face has none.
-fn normal(case: &Case, slant: Slant, random: &mut Pcg32) -> Option<DVec2> {
+fn normal(case: &Case, slant: Slant, random: &mut Random) -> Option<DVec2> {
     let (d, [a, b]) = (case.direction, case.face);
     let x = DVec2::new(d.y, -d.x);
-    let side = if random.bits().is_multiple_of(2) {
+    let side = if random.next().is_multiple_of(2) {
         1.0
     } else {
         -1.0
@@ -51,18 +51,18 @@ fn normal(case: &Case, slant: Slant, random: &mut Pcg32) -> Option<DVec2> {
     let (sin, cos) = (side * case.theta).sin_cos();
     let along = b - a;
     let found = match slant {
-        Slant::Generic => turned(d, between(random, -1.2, 1.2)),
+        Slant::Generic => turned(d, random.between(-1.2, 1.2)),
         Slant::AlongCone => d * sin + x * cos,
         Slant::Hyperbola => {
             let w = DVec2::new(along.dot(x), along.dot(d));
             d * (cos * w.x - sin * w.y) - x * (sin * w.x + cos * w.y)
         }
         Slant::OwnLine => along.perp(),
-        Slant::Steep => turned(x * side, between(random, 0.001, 0.05)),
+        Slant::Steep => turned(x * side, random.between(0.001, 0.05)),
         Slant::Across => d + x * (side * 1e-15),
     };
     let found = found.normalize_or_zero();
-    let turned_back = if random.bits().is_multiple_of(2) {
+    let turned_back = if random.next().is_multiple_of(2) {
         -found
     } else {
         found
@@ -72,7 +72,7 @@ fn normal(case: &Case, slant: Slant, random: &mut Pcg32) -> Option<DVec2> {
 }
 
 #[test]
-fn a_point_of_a_face_on_a_slanted_line_is_seen_to_move_more_than_its_interval_claims() {
+fn no_point_of_a_face_on_a_slanted_line_is_seen_to_move_more_than_its_interval_claims() {
     let mut counted = Vec::new();
     for slant in SLANTS {
         let (count, mut random) = cases(300 + slant as u64);
@@ -113,15 +113,12 @@ fn a_point_of_a_face_on_a_slanted_line_is_seen_to_move_more_than_its_interval_cl
 }
 
 #[test]
-fn viewers_without_end_see_a_face_move_on_a_slanted_line_more_than_its_interval_claims() {
+fn no_viewers_without_end_see_a_face_move_on_a_slanted_line_more_than_its_interval_claims() {
     let (count, mut random) = cases(310);
     let mut limited = 0;
     for number in 0..count {
         let mut at = |low: f64| {
-            let (x, y) = (
-                between(&mut random, -9.0, 9.0),
-                between(&mut random, low, 9.0),
-            );
+            let (x, y) = (random.between(-9.0, 9.0), random.between(low, 9.0));
             DVec2::new(x, y)
         };
         let (a, b) = (at(0.3), at(0.3));
@@ -132,11 +129,11 @@ fn viewers_without_end_see_a_face_move_on_a_slanted_line_more_than_its_interval_
             cell: [DVec2::new(end, 0.0), DVec2::new(end + mirror, 0.0)],
             endless: true,
             face: [a, b].map(|p| DVec2::new(p.x, p.y * below)),
-            direction: DVec2::from_angle(between(&mut random, 0.0, TAU)),
+            direction: DVec2::from_angle(random.between(0.0, TAU)),
             normal: DVec2::ZERO,
-            theta: between(&mut random, 0.01, 1.2),
+            theta: random.between(0.01, 1.2),
         };
-        let normal = turned(case.direction, between(&mut random, -1.2, 1.2));
+        let normal = turned(case.direction, random.between(-1.2, 1.2));
         let case = Case { normal, ..case };
         let interval = case.interval();
         case.judge("endless", number, interval.max, 1.0);
@@ -147,20 +144,15 @@ fn viewers_without_end_see_a_face_move_on_a_slanted_line_more_than_its_interval_
 }
 
 #[test]
-fn a_line_cell_limits_a_face_on_a_slanted_line_elsewhere_than_at_its_ends() {
+fn a_line_cell_limits_a_face_on_a_slanted_line_at_its_ends_only() {
     let (count, mut random) = cases(311);
     let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
     for number in 0..count {
-        let mut at = || {
-            DVec2::new(
-                between(&mut random, -9.0, 9.0),
-                between(&mut random, 0.1, 9.0),
-            )
-        };
+        let mut at = || DVec2::new(random.between(-9.0, 9.0), random.between(0.1, 9.0));
         let (a, b) = (at(), at());
-        let d = DVec2::from_angle(between(&mut random, 0.0, TAU));
-        let n = turned(d, between(&mut random, -1.2, 1.2));
-        let theta = between(&mut random, 0.001, 1.2);
+        let d = DVec2::from_angle(random.between(0.0, TAU));
+        let n = turned(d, random.between(-1.2, 1.2));
+        let theta = random.between(0.001, 1.2);
         let aperture = Aperture::radians(theta).expect("below a right angle");
         let projection = Projection::oblique(&line, d, n, aperture).expect("not parallel");
         let interval = projection.interval(a, b);
@@ -185,18 +177,13 @@ fn a_line_cell_limits_a_face_on_a_slanted_line_elsewhere_than_at_its_ends() {
 }
 
 #[test]
-fn the_own_line_of_a_face_is_refused_to_some_direction() {
+fn the_own_line_of_a_face_is_allowed_to_every_direction() {
     let (count, mut random) = cases(312);
     for number in 0..count {
-        let mut at = || {
-            DVec2::new(
-                between(&mut random, -9.0, 9.0),
-                between(&mut random, -9.0, 9.0),
-            )
-        };
+        let mut at = || DVec2::new(random.between(-9.0, 9.0), random.between(-9.0, 9.0));
         let (a, b, e, f) = (at(), at(), at(), at());
         let normal = (b - a).perp().normalize();
-        let direction = turned(normal, between(&mut random, -1.5, 1.5));
+        let direction = turned(normal, random.between(-1.5, 1.5));
         let cell = ViewerSegment::between(e, f).expect("finite ends");
         for theta in [0.0, 1e-4, 0.1, 1.5] {
             let aperture = Aperture::radians(theta).expect("below a right angle");
@@ -214,7 +201,7 @@ fn the_own_line_of_a_face_is_refused_to_some_direction() {
 }
 
 #[test]
-fn a_direction_and_its_opposite_or_a_line_and_itself_give_two_answers() {
+fn a_direction_and_its_opposite_and_a_line_and_itself_give_one_answer() {
     let (count, mut random) = cases(313);
     for number in 0..count {
         let case = draw(CLASSES[number as usize % CLASSES.len()], &mut random);
@@ -230,7 +217,7 @@ fn a_direction_and_its_opposite_or_a_line_and_itself_give_two_answers() {
         let bits = |i: Interval| (i.min.to_bits(), i.max.to_bits());
         let across = Projection::new(&cell, d, aperture).interval(case.face[0], case.face[1]);
         assert_eq!(bits(interval(d, d)), bits(across), "case {number}");
-        let n = turned(d, between(&mut random, -1.5, 1.5));
+        let n = turned(d, random.between(-1.5, 1.5));
         assert_eq!(bits(interval(d, n)), bits(interval(-d, n)), "case {number}");
         let (one, other) = (interval(d, n), interval(d, -n));
         let near = |x: f64, y: f64| x == y || (x - y).abs() <= 1e-9 * (SCALE + x.abs());
@@ -242,7 +229,7 @@ fn a_direction_and_its_opposite_or_a_line_and_itself_give_two_answers() {
 }
 
 #[test]
-fn without_tolerance_a_face_has_a_slanted_line_other_than_its_own() {
+fn without_tolerance_a_face_has_no_slanted_line_but_its_own() {
     let none = Aperture::radians(0.0).expect("zero is an angle");
     let interval = |cell: ViewerSegment, d: DVec2, n: DVec2, a: DVec2, b: DVec2| {
         Projection::oblique(&cell, d, n, none)
@@ -272,7 +259,7 @@ fn without_tolerance_a_face_has_a_slanted_line_other_than_its_own() {
 }
 
 #[test]
-fn a_face_along_the_direction_through_the_viewpoint_goes_beside_it() {
+fn a_face_along_the_direction_through_the_viewpoint_does_not_go_beside_it() {
     for (slant, degrees) in [(0.5, 1.0), (-0.7, 0.1), (1.1, 40.0)] {
         let normal = turned(DVec2::Y, slant);
         let aperture = Aperture::degrees(degrees).expect("below 90");
@@ -291,7 +278,7 @@ fn a_face_along_the_direction_through_the_viewpoint_goes_beside_it() {
 }
 
 #[test]
-fn a_line_along_the_direction_is_projected_on() {
+fn no_line_along_the_direction_is_projected_on() {
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let aperture = Aperture::degrees(1.0).expect("below 90");
     for (direction, normal) in [
@@ -307,7 +294,7 @@ fn a_line_along_the_direction_is_projected_on() {
 }
 
 #[test]
-fn a_quick_look_at_a_point_refuses_a_slanted_line_that_its_face_may_have() {
+fn a_quick_look_at_a_point_refuses_no_slanted_line_that_its_face_may_have() {
     let (mut refused, mut beyond) = (0, 0);
     let (count, mut random) = cases(314);
     for number in 0..count {
@@ -336,9 +323,8 @@ fn a_quick_look_at_a_point_refuses_a_slanted_line_that_its_face_may_have() {
                             min: rho - s,
                             max: rho,
                         };
-                        let radius = between(&mut random, 0.0, 2.0);
-                        let centre =
-                            p + turned(DVec2::new(radius, 0.0), between(&mut random, 0.0, TAU));
+                        let radius = random.between(0.0, 2.0);
+                        let centre = p + turned(DVec2::new(radius, 0.0), random.between(0.0, TAU));
                         assert!(
                             projection.may_reach(p, wide)
                                 && projection.may_reach(p, Interval { min: rho, max: rho })

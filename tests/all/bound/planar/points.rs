@@ -5,7 +5,7 @@ use lodmark::bound::planar::{
     Aperture, Rays, ViewerSegment, segment_error, segment_extent, segment_extents, viewpoint_extent,
 };
 
-use super::seen::{angle, between, cases, largest};
+use super::seen::{angle, cases, largest};
 
 struct Case {
     cell: [DVec2; 2],
@@ -33,30 +33,26 @@ impl Case {
 fn draw(stream: u64) -> impl Iterator<Item = Case> {
     let (count, mut random) = cases(stream);
     (0..count).map(move |i| {
-        let mut at = |size: f64| {
-            DVec2::new(
-                between(&mut random, -size, size),
-                between(&mut random, -size, size),
-            )
-        };
+        let mut at =
+            |size: f64| DVec2::new(random.between(-size, size), random.between(-size, size));
         let (a, b, point) = (at(5.0), at(5.0), at(12.0));
         let theta = match i % 4 {
-            0 => between(&mut random, 0.001, 0.01),
-            3 => between(&mut random, 0.5, 1.5),
-            _ => between(&mut random, 0.01, 0.5),
+            0 => random.between(0.001, 0.01),
+            3 => random.between(0.5, 1.5),
+            _ => random.between(0.01, 0.5),
         };
         Case {
             // Some cells are one viewpoint.
             cell: [a, if i % 16 == 5 { a } else { b }],
             point,
-            direction: DVec2::from_angle(between(&mut random, 0.0, std::f64::consts::TAU)),
+            direction: DVec2::from_angle(random.between(0.0, std::f64::consts::TAU)),
             theta,
         }
     })
 }
 
 #[test]
-fn a_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
+fn no_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
     let (mut limited, mut inner, mut unbounded) = (0, 0, 0);
     for (i, case) in draw(1).enumerate() {
         let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
@@ -100,7 +96,7 @@ fn a_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
 }
 
 #[test]
-fn a_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
+fn no_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
     for (i, case) in draw(2).enumerate() {
         if case.cell[0] == case.cell[1] {
             continue;
@@ -133,7 +129,7 @@ fn a_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
 }
 
 #[test]
-fn the_worst_viewpoint_of_a_moved_point_is_missed() {
+fn the_worst_viewpoint_of_a_moved_point_is_found() {
     let mut touching = 0;
     for (i, case) in draw(3).enumerate() {
         let moved = case.point + case.direction * (case.theta * 20.0);
@@ -167,7 +163,7 @@ fn the_worst_viewpoint_of_a_moved_point_is_missed() {
 }
 
 #[test]
-fn a_column_of_extents_has_other_bits_than_one_by_one() {
+fn a_column_of_extents_has_the_bits_of_one_by_one() {
     let all: Vec<Case> = draw(4).collect();
     let cell = all[0].cell();
     let aperture = Aperture::radians(0.02).expect("small");
@@ -195,7 +191,7 @@ fn a_column_of_extents_has_other_bits_than_one_by_one() {
 }
 
 #[test]
-fn a_point_at_a_viewpoint_may_still_move() {
+fn a_point_at_a_viewpoint_may_not_move() {
     let aperture = Aperture::degrees(10.0).expect("below 90");
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     for x in [-1.0, -0.3, 0.0, 1.0] {
@@ -213,7 +209,7 @@ fn a_point_at_a_viewpoint_may_still_move() {
 }
 
 #[test]
-fn a_point_on_the_line_beside_its_segment_is_taken_for_one_in_it() {
+fn a_point_on_the_line_beside_its_segment_is_not_taken_for_one_in_it() {
     let theta = 0.1;
     let aperture = Aperture::radians(theta).expect("small");
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
@@ -230,7 +226,7 @@ fn a_point_on_the_line_beside_its_segment_is_taken_for_one_in_it() {
 }
 
 #[test]
-fn without_tolerance_a_point_may_move_across_the_sight() {
+fn without_tolerance_no_point_may_move_across_the_sight() {
     let none = Aperture::radians(0.0).expect("zero is an angle");
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
@@ -263,7 +259,7 @@ fn without_tolerance_a_point_may_move_across_the_sight() {
 }
 
 #[test]
-fn an_angle_that_bounds_nothing_is_taken() {
+fn an_angle_that_bounds_nothing_is_refused() {
     for angle in [90.0, 120.0, -0.1, f64::NAN, f64::INFINITY] {
         let error = Aperture::degrees(angle).expect_err("no half-aperture");
         assert_eq!(error.exit_code(), 2);
@@ -287,7 +283,7 @@ fn an_angle_that_bounds_nothing_is_taken() {
 }
 
 #[test]
-fn a_cell_without_place_is_taken() {
+fn a_cell_without_place_is_refused() {
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(ViewerSegment::between(DVec2::ZERO, DVec2::new(bad, 0.0)).is_err());
         assert!(ViewerSegment::line(DVec2::new(bad, 0.0), DVec2::X).is_err());

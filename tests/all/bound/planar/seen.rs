@@ -1,17 +1,14 @@
 //! What a viewer sees, by nothing but the angle between two sights: the code that the bounds are held against.
 
 use glam::DVec2;
-use lodmark::mesh::generate::Pcg32;
+
+use crate::support::{Random, bound_count, bound_seed};
 
 /// How many cases of a kind, and the numbers they are drawn from: 10^3 and seed 2007 unless LODMARK_BOUND_CASES and
 /// LODMARK_SEED say otherwise.
-pub(super) fn cases(stream: u64) -> (u32, Pcg32) {
-    let count = u32::try_from(crate::support::bound_cases(1_000)).expect("a number of cases");
-    (count, Pcg32::new(crate::support::bound_seed(), stream))
-}
-
-pub(super) fn between(random: &mut Pcg32, low: f64, high: f64) -> f64 {
-    low + (high - low) * random.unit()
+pub(super) fn cases(stream: u64) -> (u32, Random) {
+    let count = bound_count(1_000);
+    (count, Random::new(bound_seed(), stream))
 }
 
 /// The angle between `a` and `b` seen from `v`.

@@ -3,36 +3,8 @@
 use glam::DVec3;
 use lodmark::bound::tolerance::OldFace;
 
-use super::{cases, coordinates, neighborhood, ring, ring_of, vector};
-use crate::{bound::envelope::distance, bound::envelope::lattice, support::Random};
-
-/// Distance from a point to a triangle by descent over barycentric samples; never too small.
-fn sampled_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let (mut s, mut t, mut step, mut best) = (1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, f64::INFINITY);
-    for _ in 0..40 {
-        let (s0, t0) = (s, t);
-        for (i, j) in [
-            (0, 0),
-            (1, 0),
-            (-1, 0),
-            (0, 1),
-            (0, -1),
-            (1, -1),
-            (-1, 1),
-            (1, 1),
-            (-1, -1),
-        ] {
-            let x = (s0 + step * f64::from(i)).clamp(0.0, 1.0);
-            let y = (t0 + step * f64::from(j)).clamp(0.0, 1.0 - x);
-            let d = (a + (b - a) * x + (c - a) * y - p).length();
-            if d < best {
-                (best, s, t) = (d, x, y);
-            }
-        }
-        step *= 0.7;
-    }
-    best
-}
+use super::{cases, coordinates, neighborhood, ring, ring_of};
+use crate::support::{Random, distance, distance_by_descent, lattice};
 
 #[test]
 fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
@@ -41,7 +13,7 @@ fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
     for _ in 0..cases() / 4 {
         let (_, faces) = ring(&mut random, 0.5);
         let around = neighborhood(&faces).expect("no needles");
-        let v = vector(&mut random, 0.3);
+        let v = random.vector(0.3);
         let claimed = around.deviation(v);
         assert!(around.keeps(v, claimed) && !around.keeps(v, claimed * 0.999));
         let mut most: f64 = 0.0;
@@ -49,7 +21,7 @@ fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
             let face = &faces[random.below(faces.len() - 2)];
             let (s, t) = (random.unit(), random.unit());
             let p = v * (1.0 - s) + (face.points[1] * t + face.points[2] * (1.0 - t)) * s;
-            let distances = faces.iter().map(|f| sampled_distance(p, f.points));
+            let distances = faces.iter().map(|f| distance_by_descent(p, f.points));
             let nearest = distances.fold(f64::INFINITY, f64::min);
             assert!(nearest <= claimed + 1e-3, "{p}: {nearest} above {claimed}");
             most = most.max(nearest);
@@ -68,7 +40,7 @@ fn no_point_above_a_peak_is_farther_than_the_measured_deviation() {
         let slope = 0.2 + random.unit();
         let (_, faces) = ring_of(&mut random, 0.1, 0.4, slope);
         let around = neighborhood(&faces).expect("no needles");
-        let v = DVec3::Z * (0.05 + 0.3 * random.unit()) + vector(&mut random, 0.05);
+        let v = DVec3::Z * (0.05 + 0.3 * random.unit()) + random.vector(0.05);
         let claimed = around.deviation(v);
         let corners: Vec<[DVec3; 3]> = faces.iter().map(|f| f.points).collect();
         let mut most: f64 = 0.0;

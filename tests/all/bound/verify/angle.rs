@@ -15,16 +15,9 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::{
-    support::Random, support::bounded, support::code, support::expect, support::folder,
-    support::lodmark, support::meshes, support::put, support::stdout,
+use crate::support::{
+    Random, bounded, code, expect, folder, lodmark, meshes, moved, put, same_on_all_threads, stdout,
 };
-
-pub(super) fn moved(mesh: &Mesh, vertex: usize, by: DVec3) -> Mesh {
-    let mut positions = mesh.positions().to_vec();
-    positions[vertex] += by;
-    Mesh::from_triangles(positions, mesh.triangles().to_vec()).expect("valid")
-}
 
 /// The record that says that every triangle of `low` stands for the same one of `original`.
 pub(super) fn identity(original: &Mesh, low: &Mesh) -> Vec<u8> {
@@ -249,15 +242,7 @@ fn the_number_of_threads_changes_no_bit() {
     let low = moved(&mesh, 3, DVec3::new(0.1, 0.0, 0.05));
     let cell = ViewCell::segment([DVec3::new(0.0, 0.0, 9.0), DVec3::new(6.0, 0.0, 9.0)])
         .expect("a segment");
-    let reports: Vec<AngleReport> = [1, 2, 3]
-        .map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.expect("threads")
-                .install(|| check(&mesh, &low, &cell, 0.5))
-        })
-        .into();
-    assert_eq!(reports[0], reports[1]);
-    assert_eq!(reports[0], reports[2]);
+    same_on_all_threads(|| check(&mesh, &low, &cell, 0.5));
 }
 
 #[test]

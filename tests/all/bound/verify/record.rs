@@ -14,8 +14,8 @@ use lodmark::{
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::angle::{identity, moved, read};
-use crate::support::bounded;
+use super::angle::{identity, read};
+use crate::support::{bounded, moved};
 
 /// Bytes before the first piece; the last eight count the pieces.
 const HEADER: usize = 92;

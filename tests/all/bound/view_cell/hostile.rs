@@ -47,7 +47,7 @@ fn judge(text: &str) -> Result<bool, String> {
 }
 
 #[test]
-fn a_cell_file_cut_off_anywhere_is_read() {
+fn a_cell_file_cut_off_anywhere_is_refused() {
     for text in files() {
         assert_eq!(judge(&text), Ok(true), "{text}");
         for end in 0..text.trim_end().len() {
@@ -57,7 +57,7 @@ fn a_cell_file_cut_off_anywhere_is_read() {
 }
 
 #[test]
-fn deep_or_endless_cell_files_cost_more_than_their_bytes() {
+fn deep_or_endless_cell_files_cost_no_more_than_their_bytes() {
     let deep = |open: &str, close: &str| open.repeat(100_000) + &close.repeat(100_000);
     for text in [
         deep("[", "]"),
@@ -75,7 +75,7 @@ fn deep_or_endless_cell_files_cost_more_than_their_bytes() {
     ] {
         assert_eq!(judge(&text), Ok(false), "{}", &text[..60]);
     }
-    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+    let folder = crate::support::folder();
     let path = folder.path().join("cell.json");
     for (bytes, said) in [
         (vec![b' '; (1 << 20) + 1], "more than"),
@@ -155,7 +155,7 @@ proptest! {
     #![proptest_config(cases(2_000))]
 
     #[test]
-    fn a_cell_file_with_damaged_bytes_ends_the_run(
+    fn a_cell_file_with_damaged_bytes_is_never_a_panic(
         which in 0_usize..7,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0_u8..3), 1..4),
     ) {
@@ -173,7 +173,7 @@ proptest! {
     }
 
     #[test]
-    fn a_cell_of_odd_numbers_ends_the_run(body in body()) {
+    fn a_cell_of_odd_numbers_is_never_a_panic(body in body()) {
         let text = format!("{{\"schema\": 1, \"cell\": {{{body}}}}}");
         let answer = judge(&text);
         prop_assert!(answer.is_ok(), "{text}: {answer:?}");

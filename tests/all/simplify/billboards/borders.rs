@@ -6,7 +6,7 @@ use lodmark::mesh::{Mesh, generate};
 use super::{before_the_city, blocks, cloud, in_the_forest, within};
 
 #[test]
-fn a_filter_mixes_a_texel_with_nothing() {
+fn a_filter_mixes_no_texel_with_nothing() {
     let mesh = blocks(40);
     let cloud = cloud(&mesh, &before_the_city(), &within(0.3));
     let (mut border, mut far) = (0, 0);
@@ -35,7 +35,7 @@ fn a_filter_mixes_a_texel_with_nothing() {
 }
 
 #[test]
-fn a_wall_behind_the_plane_of_viewers_is_moved() {
+fn a_wall_behind_the_plane_of_viewers_is_not_moved() {
     let positions = [
         [0.0, -8.0, 0.0],
         [2.0, -8.0, 0.0],

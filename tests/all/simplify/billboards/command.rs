@@ -3,39 +3,30 @@
 use std::process::Command;
 
 use lodmark::{
-    Error, Progress,
+    Error,
     bound::planar::Aperture,
     io,
     simplify::billboards::{Limit, Options, billboards, files},
 };
 
 use super::{before_the_city, blocks, cloud, within};
-
-struct Stopped;
-
-impl Progress for Stopped {
-    fn report(&self, _: &str, _: u64, _: u64) {}
-
-    fn interrupted(&self) -> bool {
-        true
-    }
-}
+use crate::support::Impatient;
 
 #[test]
-fn a_user_who_wants_to_stop_waits_for_the_end() {
+fn a_user_who_wants_to_stop_does_not_wait_for_the_end() {
     let mesh = blocks(4);
-    let stopped = billboards(&mesh, &before_the_city(), &within(0.1), &Stopped);
+    let stopped = billboards(&mesh, &before_the_city(), &within(0.1), &Impatient);
     assert!(matches!(stopped, Err(Error::Interrupted)));
-    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+    let folder = crate::support::folder();
     let whole = cloud(&mesh, &before_the_city(), &within(0.1));
-    let stopped = files::write(folder.path(), &whole, &mesh, &Stopped);
+    let stopped = files::write(folder.path(), &whole, &mesh, &Impatient);
     assert!(matches!(stopped, Err(Error::Interrupted)));
     assert!(!folder.path().join("billboards.obj").exists());
 }
 
 #[test]
-fn the_command_writes_what_cannot_be_read_back() {
-    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+fn what_the_command_writes_is_read_back() {
+    let folder = crate::support::folder();
     let path = |name: &str| folder.path().join(name);
     let mesh = blocks(6);
     io::write(&path("city.obj"), &mesh).expect("written");

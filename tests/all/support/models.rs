@@ -1,0 +1,34 @@
+//! Real meshes, from the folder that `LODMARK_MODELS` names, else `../shared/models`.
+
+use std::path::{Path, PathBuf};
+
+use lodmark::{
+    io,
+    mesh::{self, Mesh},
+};
+
+use super::oracle::say;
+
+/// The file of a model; a line that says why a test is skipped where it is not there.
+fn model_file(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
+        PathBuf::from,
+    );
+    let path = folder.join(name);
+    if !path.exists() {
+        say(&format!("skipped: {} is not there", path.display()));
+        return None;
+    }
+    Some(path)
+}
+
+/// A model as its file has it.
+pub(crate) fn read_model(name: &str) -> Option<io::Loaded> {
+    model_file(name).map(|path| io::read(&path).expect("a good file"))
+}
+
+/// A model, welded.
+pub(crate) fn model(name: &str) -> Option<Mesh> {
+    read_model(name).map(|loaded| mesh::weld(loaded.mesh).mesh)
+}
