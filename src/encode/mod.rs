@@ -9,6 +9,7 @@ pub mod bytes;
 mod font;
 pub mod hash;
 pub mod json;
+pub mod line_chart;
 pub mod npy;
 pub mod png;
 pub mod sealed_file;

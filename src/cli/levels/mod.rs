@@ -229,7 +229,7 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
     let text = judge::csv(&levels);
     io::atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
     let title = format!("{}, {count} triangles", options.input.display());
-    let chart = chart::svg(&title, &levels)?;
+    let chart = chart::svg(&title, &levels);
     io::atomic::write(&svg, |file: &mut dyn Write| {
         file.write_all(chart.as_bytes())
     })?;

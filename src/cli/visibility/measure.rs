@@ -190,7 +190,7 @@ pub(in crate::cli) fn run(
     }
     if let Some([csv, svg]) = &figure {
         write(csv, chart::csv(&steps).as_bytes())?;
-        write(svg, chart::svg(&steps)?.as_bytes())?;
+        write(svg, chart::svg(&steps).as_bytes())?;
     }
     if let (Some(path), Some(kept)) = (&options.remove_hidden, &kept) {
         for note in io::write(path, kept)? {
