@@ -80,6 +80,7 @@
 )]
 
 mod error;
+mod parallel;
 mod progress;
 
 #[cfg(feature = "internals")]

@@ -5,11 +5,13 @@
 //! (Figure 11). Both tests are given all they could wish for: exact angles, and every viewpoint of the cell.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{point::error, surface::Replacement, view_cell::ViewCell};
-use crate::mesh::{Edge, Edges, Mesh};
+use crate::{
+    mesh::{Edge, Edges, Mesh},
+    parallel,
+};
 
 /// Angles in radians that tests would have called the error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,19 +36,17 @@ pub fn claims(
 ) -> Claims {
     let positions = reference.positions();
     let angle = |a: DVec3, b: DVec3| error(cell, a, b).radians;
-    let moved = positions.par_iter().map(|&p| {
+    let moved = parallel::map_slice(positions, |&p| {
         let to = replacement.propose([p; 3]).map_or(p, |[to, ..]| to);
         angle(p, to)
     });
-    let moved: Vec<f64> = moved.collect();
     let mut kept: Vec<[u64; 3]> = low.positions().iter().map(|&p| bits(p)).collect();
     kept.sort_unstable();
     let gone = |v: u32| kept.binary_search(&bits(positions[v as usize])).is_err();
     let edges: Vec<Edge> = Edges::of(reference).iter().map(|(edge, _)| edge).collect();
-    let seen: Vec<f64> = edges
-        .par_iter()
-        .map(|&[a, b]| angle(positions[a as usize], positions[b as usize]))
-        .collect();
+    let seen = parallel::map_slice(&edges, |&[a, b]| {
+        angle(positions[a as usize], positions[b as usize])
+    });
     let mut least = vec![f64::INFINITY; positions.len()];
     for (&[a, b], &angle) in edges.iter().zip(&seen) {
         for v in [a, b] {

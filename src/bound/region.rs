@@ -5,7 +5,6 @@
 //! no end in a direction it is cut off at a given reach.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     planar::Aperture,
@@ -16,6 +15,7 @@ use crate::{
     Error, Result,
     mesh::{Mesh, generate},
     num::math::{cos, sin, unit},
+    parallel,
 };
 
 /// Most points of the outline of a profile.
@@ -152,10 +152,8 @@ fn lengths(
             "the reach is {reach}; expected a length above 0"
         )));
     }
-    let extents: Vec<f64> = directions
-        .par_iter()
-        .map(|&d| extent(cell, point, d, aperture).length)
-        .collect();
+    let extents: Vec<f64> =
+        parallel::map_slice(directions, |&d| extent(cell, point, d, aperture).length);
     let largest = extents.iter().copied().filter(|t| t.is_finite());
     let largest = largest.fold(0.0, f64::max);
     let reach = reach.unwrap_or(if largest > 0.0 {

@@ -12,12 +12,12 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{point::error, view_cell::ViewCell};
 use crate::{
     Progress, Result,
     num::math::{asin, length},
+    parallel,
 };
 
 /// Given to every bound for the rounding of the computations behind it, relative to the bound and to the size of the
@@ -171,10 +171,9 @@ pub fn measure(
         for batch in pairs.chunks(BATCH) {
             pieces += batch.len() as u64;
             progress.step("bound", pieces, 0)?;
-            let judged: Vec<Judged> = batch
-                .par_iter()
-                .map(|&(pair, depth)| judge(pair, depth, replacement, measure))
-                .collect();
+            let judged: Vec<Judged> = parallel::map_slice(batch, |&(pair, depth)| {
+                judge(pair, depth, replacement, measure)
+            });
             into.extend(judged);
         }
         Ok(())

@@ -1,8 +1,7 @@
 //! Adjacency without a manifold assumption: triangles around a vertex, triangles at an edge.
 
-use rayon::prelude::*;
-
 use super::Mesh;
+use crate::parallel;
 
 /// The triangles at every vertex, in ascending order; a triangle that repeats a vertex is listed once there.
 #[derive(Clone, Debug)]
@@ -80,7 +79,7 @@ impl Edges {
                 }
             }
         }
-        sides.par_sort_unstable();
+        parallel::sort_by(&mut sides, Ord::cmp);
         sides.dedup();
         let mut edges: Vec<Edge> = Vec::with_capacity(sides.len() / 2);
         let mut starts = Vec::with_capacity(sides.len() / 2 + 1);

@@ -7,12 +7,12 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     Attributes, ChannelKind, Materials, Mesh, MeshParts,
     unite::{compare_rows, unite},
 };
+use crate::parallel;
 
 /// A mesh in canonical order, with what was dropped on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,12 +95,11 @@ fn vertex_order(mesh: &Mesh, kept: &[usize]) -> Vec<u32> {
         .fold((place(first), place(first)), |(low, high), &v| {
             (low.min(place(v)), high.max(place(v)))
         });
-    let mut keyed: Vec<(u64, DVec3, u32, u32)> = order
-        .par_iter()
-        .enumerate()
-        .map(|(use_order, &v)| (morton(place(v), low, high), place(v), use_order as u32, v))
-        .collect();
-    keyed.par_sort_unstable_by(|a, b| {
+    let mut keyed: Vec<(u64, DVec3, u32, u32)> = parallel::map(order.len(), |use_order| {
+        let v = order[use_order];
+        (morton(place(v), low, high), place(v), use_order as u32, v)
+    });
+    parallel::sort_by(&mut keyed, |a, b| {
         a.0.cmp(&b.0)
             .then_with(|| compare_rows(&a.1.to_array(), &b.1.to_array()))
             .then(a.2.cmp(&b.2))
@@ -144,21 +143,20 @@ fn spread(x: u64) -> u64 {
 }
 
 fn sorted_triangles(mesh: &Mesh, kept: &[usize], renumbered: &[u32]) -> Vec<Placed> {
-    let mut triangles: Vec<Placed> = kept
-        .par_iter()
-        .map(|&t| {
-            let mut vertices = mesh.triangles()[t].map(|v| renumbered[v as usize]);
-            let smallest = vertices[0].min(vertices[1]).min(vertices[2]);
-            let rotation = vertices.iter().position(|&v| v == smallest).unwrap_or(0);
-            vertices.rotate_left(rotation);
-            Placed {
-                vertices,
-                old: t as u32,
-                rotation: rotation as u8,
-            }
-        })
-        .collect();
-    triangles.par_sort_unstable_by_key(|t| (t.vertices, t.old));
+    let mut triangles: Vec<Placed> = parallel::map_slice(kept, |&t| {
+        let mut vertices = mesh.triangles()[t].map(|v| renumbered[v as usize]);
+        let smallest = vertices[0].min(vertices[1]).min(vertices[2]);
+        let rotation = vertices.iter().position(|&v| v == smallest).unwrap_or(0);
+        vertices.rotate_left(rotation);
+        Placed {
+            vertices,
+            old: t as u32,
+            rotation: rotation as u8,
+        }
+    });
+    parallel::sort_by(&mut triangles, |a, b| {
+        (a.vertices, a.old).cmp(&(b.vertices, b.old))
+    });
     let (attributes, materials) = (mesh.attributes(), mesh.materials());
     for run in triangles.chunk_by_mut(|a, b| a.vertices == b.vertices) {
         // Copies of one triangle: only what they carry tells them apart.

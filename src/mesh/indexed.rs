@@ -1,10 +1,12 @@
 //! The indexed triangle mesh.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::Attributes;
-use crate::num::{Frame, Precision};
+use crate::{
+    num::{Frame, Precision},
+    parallel,
+};
 
 /// Triangles whose bounds one task finds.
 const BOUNDS_CHUNK: usize = 1 << 15;
@@ -214,8 +216,13 @@ impl Mesh {
             let first = corners.next()?;
             Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
         };
-        let boxes = self.triangles.par_chunks(BOUNDS_CHUNK).filter_map(of_some);
-        boxes.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        let chunks = self.triangles.len().div_ceil(BOUNDS_CHUNK);
+        let boxes = parallel::filter_map(chunks, |i| {
+            let end = self.triangles.len().min((i + 1) * BOUNDS_CHUNK);
+            of_some(&self.triangles[i * BOUNDS_CHUNK..end])
+        });
+        let boxes = boxes.into_iter();
+        boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     /// The same mesh with positions in units of `frame`: an exact scaling, undone by [`Mesh::leave_frame`].

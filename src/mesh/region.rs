@@ -3,9 +3,9 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{Mesh, MeshParts};
+use crate::parallel;
 
 /// Cells along a side of the grid.
 const GRID: usize = 128;
@@ -80,7 +80,7 @@ impl Mesh {
             }
         }
         let counts = OnceLock::new();
-        let touches = |face: &&[u32; 3]| {
+        let touches = |face: &[u32; 3]| {
             let [p, q, r] = face.map(|v| self.positions()[v as usize]);
             let (a, b) = (cell(p.min(q).min(r)), cell(p.max(q).max(r)));
             if (b[2] - a[2] + 1) * (b[1] - a[1] + 1) > ROWS {
@@ -89,13 +89,11 @@ impl Mesh {
             }
             (a[2]..=b[2]).any(|z| (a[1]..=b[1]).any(|y| near[row(a, b, y, z)].contains(&true)))
         };
-        let faces: Vec<[u32; 3]> = self
-            .triangles()
-            .par_iter()
-            .step_by(stride.max(1))
-            .filter(touches)
-            .copied()
-            .collect();
+        let stride = stride.max(1);
+        let faces = parallel::filter_map(self.triangles().len().div_ceil(stride), |i| {
+            let face = self.triangles()[i * stride];
+            touches(&face).then_some(face)
+        });
         let mut renamed = vec![0_u32; self.positions().len()];
         for &v in faces.iter().flatten() {
             renamed[v as usize] = 1;

@@ -1,8 +1,7 @@
 //! Groups equal items and numbers the groups in the order of their first members, without a hash map.
 
+use crate::parallel;
 use std::cmp::Ordering;
-
-use rayon::prelude::*;
 
 /// Items with equal keys share a group.
 pub(crate) struct United {
@@ -19,7 +18,7 @@ pub(crate) fn unite(
     compare: impl Fn(usize, usize) -> Ordering + Sync + Copy,
 ) -> United {
     let mut order: Vec<usize> = (0..count).collect();
-    order.par_sort_unstable_by(|&a, &b| compare(a, b).then(a.cmp(&b)));
+    parallel::sort_numbers(&mut order, &|a, b| compare(a, b).then(a.cmp(&b)));
     let mut leaders = vec![0_usize; count];
     for run in order.chunk_by(|&a, &b| compare(a, b) == Ordering::Equal) {
         for &item in run {

@@ -7,12 +7,11 @@
 //! Units: scenes and views in one frame, that of the reference (see [`ViewSet::enter_frame`]).
 //! Pictures are drawn view by view and dropped once compared: memory is a few pictures, not views times pictures.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::luma::{SquaredError, ViewErrors, squared_error};
 use crate::{
-    Error, Progress, Result,
+    Error, Progress, Result, parallel,
     raster::{Grid, Scene, luma_sums, mean_luma},
     view::{Interpolation, Projection, Sphere, View, ViewSet, directions::dodecahedron},
 };
@@ -140,7 +139,7 @@ fn errors<const N: usize>(
     let mut found = Vec::with_capacity(count);
     for (i, part) in views.views.chunks(group).enumerate() {
         progress.step("compare pictures", (i * group) as u64, count as u64)?;
-        let errors: Vec<_> = part.par_iter().map(compare).collect();
+        let errors = parallel::map_slice(part, compare);
         for view in errors {
             found.push(view?);
         }
@@ -182,7 +181,7 @@ fn with(view: &View, interpolation: Interpolation) -> View {
 
 /// Views that may be drawn at the same time. It decides memory and speed, never a result.
 fn at_a_time(reference: &Scene, candidates: &[Scene], views: &ViewSet) -> usize {
-    let threads = rayon::current_num_threads();
+    let threads = parallel::threads();
     let largest = std::iter::once(reference)
         .chain(candidates)
         .map(Scene::triangle_count)

@@ -7,13 +7,13 @@
 //! Edges with one face or more than two have no angle; faces without area have no side.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{Proximity, surface::frame_and_diagonal};
 use crate::{
     Progress, Result,
     mesh::{Edges, Mesh},
     num::math::{length, sqrt},
+    parallel,
 };
 
 /// Cosine of the normals below which an edge is folded.
@@ -45,10 +45,10 @@ pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Res
     let is_new = |&&ends: &&[DVec3; 2]| around.is_new(ends);
     let folded_edges = folded(&candidate).iter().filter(is_new).count() as u64;
     let faces: Vec<[DVec3; 3]> = corners(&candidate).collect();
-    let is_flipped = |face: &&[DVec3; 3]| around.is_flipped(**face);
+    let is_flipped = |i: usize| around.is_flipped(faces[i]);
     Ok(Folds {
         folded_edges,
-        flipped_faces: faces.par_iter().filter(is_flipped).count() as u64,
+        flipped_faces: parallel::count(faces.len(), &is_flipped),
     })
 }
 

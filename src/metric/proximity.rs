@@ -11,6 +11,7 @@
 use glam::DVec3;
 
 use super::triangle::{Triangle, squared};
+use crate::parallel;
 
 /// Triangles in a leaf.
 const LEAF: usize = 4;
@@ -193,14 +194,11 @@ fn build(nodes: &mut [Node], triangles: &mut [Triangle], node: usize, first: usi
         index: second as u32,
         count: 0,
     };
-    let (build_left, build_right) = (
-        || build(left_nodes, left, node + 1, first),
-        || build(right_nodes, right, second, first + half),
-    );
+    let build_left = &mut || build(left_nodes, left, node + 1, first);
+    let build_right = &mut || build(right_nodes, right, second, first + half);
     if count > PARALLEL {
-        rayon::join(build_left, build_right);
+        parallel::both(build_left, build_right);
     } else {
-        let (mut build_left, mut build_right) = (build_left, build_right);
         build_left();
         build_right();
     }

@@ -11,12 +11,12 @@
 //! they do not depend on vertex order, and within rounding of edge-on they may be either.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{
     Error, Progress, Result,
     mesh::{Edges, Mesh},
+    parallel,
     view::Eye,
 };
 
@@ -74,10 +74,7 @@ pub fn silhouette_histogram(
                 at.x, at.y, at.z
             )));
         }
-        let facing: Vec<i8> = (0..mesh.triangles().len())
-            .into_par_iter()
-            .map(|t| facing(mesh.corners(t), eye))
-            .collect();
+        let facing = parallel::map(mesh.triangles().len(), |t| facing(mesh.corners(t), eye));
         for ((edge, triangles), views) in edges.iter().zip(&mut views_of_edge) {
             *views += u32::from(is_silhouette(mesh, edge, triangles, &facing));
         }

@@ -14,7 +14,6 @@
 //! reference. Sums are taken in fixed chunks that are added in order: the same bits for any number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{proximity::Proximity, triangle::Triangle};
@@ -25,6 +24,7 @@ use crate::{
         Frame,
         math::{length, scale_by_power_of_two, sqrt},
     },
+    parallel,
 };
 
 /// Points per surface. Distances bend where surfaces cross and are lowest there, so that means come out low, by 0.2 %
@@ -301,10 +301,8 @@ impl Surface {
         let mut sums = Sums::ZERO;
         for start in (0..chunks).step_by(GROUP as usize) {
             progress.step(phase, start, chunks)?;
-            let group: Vec<Sums> = (start..chunks.min(start + GROUP))
-                .into_par_iter()
-                .map(chunk)
-                .collect();
+            let in_group = (chunks - start).min(GROUP) as usize;
+            let group = parallel::map(in_group, |i| chunk(start + i as u64));
             sums = group.into_iter().fold(sums, Sums::plus);
         }
         progress.step(phase, chunks, chunks)?;

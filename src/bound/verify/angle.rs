@@ -12,7 +12,6 @@
 //! from nearby, so that this is above rounding for them too. The same result for any number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
@@ -31,6 +30,7 @@ use crate::{
         Frame,
         math::{atan2, cos, length, sin, sqrt},
     },
+    parallel,
 };
 
 /// Samples of a task, and tasks between two reports.
@@ -236,21 +236,18 @@ impl Check<'_> {
         let chunks = spread.len().div_ceil(CHUNK);
         for start in (0..chunks).step_by(GROUP) {
             progress.step("sample angles", start, chunks)?;
-            let group: Vec<Found> = (start..chunks.min(start + GROUP as u64))
-                .into_par_iter()
-                .map(|i| {
-                    let mut own = Found::default();
-                    let (mut k, mut near, mut corners) = (i * CHUNK, 0, Vec::new());
-                    spread.visit(k..spread.len().min(k + CHUNK), |spot| {
-                        match self.record {
-                            Some(record) => self.follow(record, spot, k, &mut corners, &mut own),
-                            None => near = self.look(&facets, spot, k, near, &mut own),
-                        }
-                        k += 1;
-                    });
-                    own
-                })
-                .collect();
+            let group = parallel::map((chunks - start).min(GROUP as u64) as usize, |i| {
+                let mut own = Found::default();
+                let (mut k, mut near, mut corners) = ((start + i as u64) * CHUNK, 0, Vec::new());
+                spread.visit(k..spread.len().min(k + CHUNK), |spot| {
+                    match self.record {
+                        Some(record) => self.follow(record, spot, k, &mut corners, &mut own),
+                        None => near = self.look(&facets, spot, k, near, &mut own),
+                    }
+                    k += 1;
+                });
+                own
+            });
             for own in &group {
                 found.add(own);
             }

@@ -8,7 +8,6 @@
 //! reference's diagonal, far above rounding. The same result for any number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
@@ -23,6 +22,7 @@ use crate::{
         Frame,
         math::{length, sqrt},
     },
+    parallel,
 };
 
 /// Points of a task.
@@ -263,10 +263,10 @@ impl Check<'_> {
             progress.step(&format!("sample the {name} mesh"), start, chunks)?;
             // Points nearer than the farthest one known, which does not break the claim, tell nothing.
             let known = worst.squared.min(limit);
-            let group: Vec<(Worst, u64)> = (start..chunks.min(start + GROUP as u64))
-                .into_par_iter()
-                .map(|i| self.sample_chunk(spread, i, known))
-                .collect();
+            let in_group = (chunks - start).min(GROUP as u64) as usize;
+            let group = parallel::map(in_group, |i| {
+                self.sample_chunk(spread, start + i as u64, known)
+            });
             for (other, count) in group {
                 worst.take(other);
                 violations += count;
@@ -309,21 +309,17 @@ impl Check<'_> {
                 start as u64,
                 tasks as u64,
             )?;
-            let group: Vec<Vec<distance_bound::Finding>> = (start..tasks.min(start + GROUP))
-                .into_par_iter()
-                .map(|i| {
-                    let first = i * TRIANGLES;
-                    let last = self.from.corners.len().min(first + TRIANGLES);
-                    let mut near = 0;
-                    let settle = |&corners| {
-                        let finding =
-                            distance_bound::settle(&self.to.facets, corners, self.most, near);
-                        near = finding.near;
-                        finding
-                    };
-                    self.from.corners[first..last].iter().map(settle).collect()
-                })
-                .collect();
+            let group: Vec<Vec<_>> = parallel::map((tasks - start).min(GROUP), |i| {
+                let first = (start + i) * TRIANGLES;
+                let last = self.from.corners.len().min(first + TRIANGLES);
+                let mut near = 0;
+                let settle = |&corners| {
+                    let finding = distance_bound::settle(&self.to.facets, corners, self.most, near);
+                    near = finding.near;
+                    finding
+                };
+                self.from.corners[first..last].iter().map(settle).collect()
+            });
             for (finding, triangle) in group
                 .into_iter()
                 .flatten()

@@ -5,7 +5,6 @@
 //! all know the same largest angle, so that the result is the same for any number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     angle::Check,
@@ -15,7 +14,7 @@ use super::{
     record::{ONE, Record},
     viewpoints::tangent2,
 };
-use crate::{Progress, Result, num::math::length};
+use crate::{Progress, Result, num::math::length, parallel};
 
 /// Original triangles of a task, tasks between two reports, and pieces that get closer bounds between two reports.
 const TRIANGLES: u32 = 64;
@@ -57,17 +56,16 @@ impl Check<'_> {
         let mut all: Vec<Bounded> = Vec::with_capacity(record.piece_count());
         for start in (0..tasks).step_by(GROUP as usize) {
             progress.step("check the pieces", u64::from(start), u64::from(tasks))?;
-            let group: Vec<_> = (start..tasks.min(start + GROUP))
-                .into_par_iter()
-                .map(|i| {
-                    let (mut own, mut wrong, mut bounds) = (Found::default(), None, Vec::new());
-                    for t in i * TRIANGLES..count.min((i + 1) * TRIANGLES) {
-                        wrong = wrong.or_else(|| Some((t, gaps::check(record, t)?)));
-                        self.first_bounds(record, t, &mut own, &mut bounds);
-                    }
-                    (own, wrong, bounds)
-                })
-                .collect();
+            let in_group = (tasks - start).min(GROUP) as usize;
+            let group = parallel::map(in_group, |i| {
+                let (mut own, mut wrong, mut bounds) = (Found::default(), None, Vec::new());
+                let first = (start + i as u32) * TRIANGLES;
+                for t in first..count.min(first + TRIANGLES) {
+                    wrong = wrong.or_else(|| Some((t, gaps::check(record, t)?)));
+                    self.first_bounds(record, t, &mut own, &mut bounds);
+                }
+                (own, wrong, bounds)
+            });
             for (own, wrong, bounds) in group {
                 found.add(&own);
                 gap = gap.or(wrong);
@@ -166,18 +164,18 @@ impl Check<'_> {
             let done = (i * CLOSER) as u64;
             progress.step("search the largest angle", done, rest.len() as u64)?;
             let wanted = wanted(known2(found));
-            let closer: Vec<(usize, Seen, f64)> = group
-                .par_iter()
-                .filter(|&&i| !wanted.is_met(all[i].lower2, all[i].upper2))
-                .map(|&i| {
-                    let mut corners = Vec::new();
-                    let b = &all[i];
-                    self.load(record, b.triangle, b.piece, &mut corners);
-                    let mut seen = self.start(b.triangle, &corners);
-                    let upper2 = refine(&corners, &self.viewpoints.parts, wanted, &mut seen);
-                    (i, seen, upper2.min(b.upper2))
-                })
-                .collect();
+            let closer = parallel::filter_map(group.len(), |i| {
+                let i = group[i];
+                let b = &all[i];
+                if wanted.is_met(b.lower2, b.upper2) {
+                    return None;
+                }
+                let mut corners = Vec::new();
+                self.load(record, b.triangle, b.piece, &mut corners);
+                let mut seen = self.start(b.triangle, &corners);
+                let upper2 = refine(&corners, &self.viewpoints.parts, wanted, &mut seen);
+                Some((i, seen, upper2.min(b.upper2)))
+            });
             for (i, seen, upper2) in closer {
                 (all[i].lower2, all[i].upper2) = (seen.tangent2, upper2);
                 found.see(seen, self.limit2);
