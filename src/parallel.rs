@@ -15,6 +15,8 @@ use std::{
     },
 };
 
+use rayon::slice::ParallelSliceMut;
+
 use crate::{Error, Result};
 
 /// Returns the number of threads that share work.
@@ -262,6 +264,14 @@ pub(crate) fn map_mut<T: Send, R: Send>(
     results.map(|r| r.expect("every item was asked")).collect()
 }
 
+/// Returns `f(item)` for every item, in order.
+pub(crate) fn map_vec<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync) -> Vec<R> {
+    let mut items: Vec<Option<T>> = items.into_iter().map(Some).collect();
+    map_mut(&mut items, |_, item| {
+        f(item.take().expect("an item is taken once"))
+    })
+}
+
 /// The sum of `f(i, item)` over all items.
 pub(crate) fn sum_mut<T: Send>(items: &mut [T], f: &(dyn Fn(usize, &mut T) -> i64 + Sync)) -> i64 {
     sum_halves(items, 0, f)
@@ -289,8 +299,15 @@ fn sum_halves<T: Send>(
 
 /// Sorts by a total order.
 pub(crate) fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
-    use rayon::slice::ParallelSliceMut;
     items.par_sort_unstable_by(compare);
+}
+
+/// Sorts by an order in which equal items stay in the order they are in.
+pub(crate) fn sort_stable_by<T: Send>(
+    items: &mut [T],
+    compare: impl Fn(&T, &T) -> Ordering + Sync,
+) {
+    items.par_sort_by(compare);
 }
 
 /// [`sort_by`] for numbers of items, with one compiled sort for all orders.

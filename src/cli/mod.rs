@@ -39,7 +39,7 @@ use std::{
 
 use clap::{Parser, Subcommand, error::ErrorKind};
 
-use crate::{Error, Result};
+use crate::{Error, Result, parallel};
 use terminal::Terminal;
 
 /// Simplify 3D meshes by what they look like, with the same bits on every machine and no GPU.
@@ -142,10 +142,7 @@ fn usage(error: &clap::Error) -> ExitCode {
 fn run(arguments: Arguments) -> Result<Verdict> {
     let common = &arguments.common;
     if let Some(threads) = common.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
-            .build_global()
-            .map_err(|e| Error::Internal(e.to_string()))?;
+        parallel::set_threads(usize::from(threads))?;
     }
     let terminal = Terminal::new(common.quiet);
     let verdict = match arguments.command {

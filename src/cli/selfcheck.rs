@@ -2,7 +2,7 @@
 
 use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
-    Error, Progress, Result,
+    Error, Progress, Result, parallel,
     selfcheck::{GROUPS, Record},
 };
 
@@ -36,7 +36,7 @@ impl Machine {
         Self {
             architecture: std::env::consts::ARCH,
             system: std::env::consts::OS,
-            threads: rayon::current_num_threads(),
+            threads: parallel::threads(),
             build: if cfg!(debug_assertions) {
                 "debug"
             } else {

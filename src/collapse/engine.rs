@@ -4,14 +4,13 @@
 //! serial. The result does not depend on the number of threads.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     Changes, Counters, LiveMesh, Method, Patch, Proposal, Refusal, Refusals, Ring, Rules, Schedule,
     evaluator::Evaluator,
     queue::{self, Evaluation, Front, Queue},
 };
-use crate::{Error, Progress, Result};
+use crate::{Error, Progress, Result, parallel};
 
 /// When a run has done enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,7 +306,7 @@ impl<M: Method> Engine<M> {
     fn refresh(&mut self, queue: &mut Queue, ids: &[u32], how: Evaluation) {
         self.count(ids.len(), how);
         let per_task = self.method.evaluations_per_task();
-        let shared = ids.len() >= self.method.shared_batch() && rayon::current_num_threads() > 1;
+        let shared = ids.len() >= self.method.shared_batch() && parallel::threads() > 1;
         if !shared && ids.len() <= per_task {
             for &id in ids {
                 let evaluator = Evaluator::new(&self.live, &self.method, self.rules, how);
@@ -374,11 +373,12 @@ impl<M: Method> Engine<M> {
     /// Estimates edges in parallel; those without an estimate stay in `ids`.
     fn estimate_all(&mut self, ids: &mut Vec<u32>) -> Vec<(u32, f64)> {
         let (live, method) = (&self.live, &self.method);
-        let estimates: Vec<Option<f64>> = ids
-            .par_iter()
-            .with_min_len(CHUNK)
-            .map(|&id| method.estimate(live, id))
-            .collect();
+        let estimates = parallel::collect(ids.len(), CHUNK, |range, estimates| {
+            estimates.reserve_exact(range.len());
+            for &id in &ids[range] {
+                estimates.push(method.estimate(live, id));
+            }
+        });
         let pairs = ids.iter().zip(&estimates);
         let estimated: Vec<_> = pairs.filter_map(|(&id, &e)| Some((id, e?))).collect();
         let mut estimates = estimates.into_iter();

@@ -2,9 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 use super::{LiveMesh, Method, Proposal, Refusal, Ring, Rules, Site, queue::Evaluation};
+use crate::parallel;
 
 /// Evaluates edges of a mesh that stays as it is meanwhile. Outcomes are in the order of the edges that were asked for,
 /// and depend on no other one.
@@ -49,12 +48,12 @@ impl<'a, M: Method> Evaluator<'a, M> {
 
     /// Evaluates a small batch on all threads: each takes the next edge when it is done with one.
     pub(super) fn shared(&self, ids: &[u32], pool: &mut Vec<(Ring, M::Scratch)>) -> Vec<Outcome> {
-        let threads = rayon::current_num_threads().min(ids.len());
+        let threads = parallel::threads().min(ids.len());
         while pool.len() < threads {
             pool.push((Ring::default(), self.method.scratch()));
         }
         let next = AtomicUsize::new(0);
-        let outcomes = pool[..threads].par_iter_mut().map(|(ring, scratch)| {
+        let outcomes = parallel::map_mut(&mut pool[..threads], |_, (ring, scratch)| {
             let mut outcomes = Vec::new();
             loop {
                 let i = next.fetch_add(1, Ordering::Relaxed);
@@ -64,7 +63,6 @@ impl<'a, M: Method> Evaluator<'a, M> {
                 outcomes.push((i, self.one(id, ring, scratch)));
             }
         });
-        let outcomes: Vec<Vec<_>> = outcomes.collect();
         let mut outcomes: Vec<(usize, Outcome)> = outcomes.into_iter().flatten().collect();
         outcomes.sort_unstable_by_key(|(i, _)| *i);
         outcomes.into_iter().map(|(_, outcome)| outcome).collect()
@@ -75,17 +73,15 @@ impl<'a, M: Method> Evaluator<'a, M> {
     where
         M: Sync,
     {
-        let chunks: Vec<Vec<_>> = ids
-            .par_chunks(per_task.max(1))
-            .map_init(
-                || (Ring::default(), self.method.scratch()),
-                |(ring, scratch), chunk| {
-                    let each = chunk.iter().map(|&id| self.one(id, ring, scratch));
-                    each.collect()
-                },
-            )
-            .collect();
-        chunks.into_iter().flatten().collect()
+        let per_task = per_task.max(1);
+        parallel::collect(ids.len().div_ceil(per_task), 1, |tasks, outcomes| {
+            let (mut ring, mut scratch) = (Ring::default(), self.method.scratch());
+            let ids = &ids[tasks.start * per_task..ids.len().min(tasks.end * per_task)];
+            outcomes.reserve_exact(ids.len());
+            for &id in ids {
+                outcomes.push(self.one(id, &mut ring, &mut scratch));
+            }
+        })
     }
 
     /// True where more faces touch an edge than the method looks at; those at both ends count twice.

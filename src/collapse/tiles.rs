@@ -8,13 +8,12 @@
 //! the run will go.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     Changes, Counters, Engine, LiveMesh, Method, NONE, Observer, Patch, Proposal, Refusal, Ring,
     Rules, Schedule, Site, Target,
 };
-use crate::{Error, Progress, Result};
+use crate::{Error, Progress, Result, parallel};
 
 /// A method that can work on parts of a mesh at the same time.
 pub trait Divisible: Method + Send + Sized {
@@ -121,10 +120,10 @@ pub fn thin<M: Divisible>(
         let cuts = cut(live, tiling, round);
         let whole = &*live;
         let by = &*method;
-        let tiles: Vec<Tile<M>> = cuts
-            .into_par_iter()
-            .map(|cut| collapse_tile(whole, by, cut, (rules, schedule), limit, progress))
-            .collect::<Result<_>>()?;
+        let tiles = parallel::map_vec(cuts, |cut| {
+            collapse_tile(whole, by, cut, (rules, schedule), limit, progress)
+        });
+        let tiles: Vec<Tile<M>> = tiles.into_iter().collect::<Result<_>>()?;
         for tile in &tiles {
             counters.add(&tile.counters);
         }
@@ -134,7 +133,7 @@ pub fn thin<M: Divisible>(
             order.extend_from_slice(&tile.collapses);
         }
         // Stable: tiles in their order, and every tile in its own.
-        order.par_sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        sort_by_cost(&mut order);
         if before - removed < target.triangles {
             let applied = apply(live, method, &order, target, observer)?;
             counters.collapses -= order.len() as u64 - applied;
@@ -190,16 +189,17 @@ fn apply<M: Method>(
     Ok(applied)
 }
 
+fn sort_by_cost(order: &mut [Thinned]) {
+    parallel::sort_stable_by(order, |a, b| a.cost.total_cmp(&b.cost));
+}
+
 /// The cost below which the wanted share of edges lies; `None` where the method cannot estimate.
 fn common_limit<M: Method>(live: &LiveMesh, method: &M) -> Option<f64> {
     let ids: Vec<u32> = (0..live.edge_ids())
         .step_by(SAMPLED)
         .filter(|&e| live.edge(e).is_some())
         .collect();
-    let mut costs: Vec<f64> = ids
-        .par_iter()
-        .filter_map(|&e| method.estimate(live, e))
-        .collect();
+    let mut costs = parallel::filter_map(ids.len(), |i| method.estimate(live, ids[i]));
     if costs.is_empty() {
         return None;
     }
@@ -282,10 +282,9 @@ fn split(live: &LiveMesh, ids: &mut [u32], most: usize, first: f64, boxes: &mut 
     });
     let (left, right) = ids.split_at_mut(at);
     let (mut more, mut rest) = (Vec::new(), Vec::new());
-    rayon::join(
-        || split(live, left, most, 0.5, &mut more),
-        || split(live, right, most, 0.5, &mut rest),
-    );
+    parallel::both(&mut || split(live, left, most, 0.5, &mut more), &mut || {
+        split(live, right, most, 0.5, &mut rest)
+    });
     boxes.append(&mut more);
     boxes.append(&mut rest);
 }

@@ -8,7 +8,6 @@
 //! counts them.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::{
     Progress, Result,
@@ -21,6 +20,7 @@ use crate::{
         folds::{FOLD_COSINE, REACH},
     },
     num::math,
+    parallel,
 };
 
 /// Opened a little further than what counts as a fold.
@@ -148,10 +148,9 @@ fn faces_at(live: &LiveMesh, edges: &[u32]) -> Vec<u32> {
 fn sharp_edges(live: &LiveMesh, vertices: Option<&[Vec<u32>]>) -> Vec<u32> {
     let is_sharp = |&edge: &u32| is_folded(live, edge, SHARP_COSINE);
     let Some(vertices) = vertices else {
-        return (0..live.edge_ids())
-            .into_par_iter()
-            .filter(is_sharp)
-            .collect();
+        return parallel::filter_map(live.edge_ids() as usize, |edge| {
+            Some(edge as u32).filter(is_sharp)
+        });
     };
     let at = |&v: &u32| live.edges_at(v);
     let mut edges: Vec<u32> = vertices.iter().flatten().flat_map(at).collect();

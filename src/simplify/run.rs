@@ -1,7 +1,5 @@
 //! From a mesh and options to an outcome.
 
-use rayon::prelude::*;
-
 use super::{
     MethodOptions, Options, Outcome, Phase, Stop,
     image::{
@@ -23,6 +21,7 @@ use crate::{
         Tiling, thin,
     },
     mesh::Mesh,
+    parallel,
     raster::{BucketEngine, LayerEngine, Unrender},
     view::{ViewsName, frame_of},
     visibility::{self, Visibility},
@@ -77,7 +76,7 @@ fn start(
 ) -> Result<Outcome> {
     options.check()?;
     // From a thread of the pool, handing work to another costs a microsecond; from outside, many.
-    rayon::scope(|_| in_pool(mesh, options, visibility, progress))
+    parallel::in_pool(|| in_pool(mesh, options, visibility, progress))
 }
 
 fn in_pool(
@@ -275,7 +274,7 @@ impl<'a> Run<'a> {
             let before = self.tiles(&mut method, Tiling::COARSE, until)?;
             // One queue keeps one core busy.
             let queue = || self.phase("memoryless", method, until, before);
-            let (thinned, drawn) = rayon::join(queue, draw);
+            let (thinned, drawn) = parallel::join(queue, draw);
             thinned?;
             drawn?
         } else {
@@ -322,9 +321,9 @@ impl<'a> Run<'a> {
             // What collapses turned over, polishing only keeps from getting worse. Turning back looks at no picture.
             let turned = self.options.error_rms.is_none()
                 && original.sides().is_some_and(|sides| {
-                    let faces = (0..self.live.triangle_ids()).into_par_iter();
-                    let corners = faces.filter_map(|t| self.live.points(t));
-                    corners.any(|face| sides.is_flipped(face))
+                    let points = |t| self.live.points(t as u32);
+                    let is_flipped = |t| points(t).is_some_and(|face| sides.is_flipped(face));
+                    parallel::any(self.live.triangle_ids() as usize, &is_flipped)
                 });
             if turned {
                 let mut following = Following {

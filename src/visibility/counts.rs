@@ -14,7 +14,6 @@ use std::{
 };
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     MeasureOptions,
@@ -26,6 +25,7 @@ use crate::{
     Error, Progress, Result,
     mesh::Mesh,
     num::math,
+    parallel,
     view::{Sphere, frame_of},
 };
 
@@ -111,20 +111,17 @@ pub(super) fn count(
     let pictures = (PIXELS_AT_ONCE / (options.size as usize).pow(2)).max(1);
     for views_of_batch in views.chunks(batch) {
         let parts = &mut parts[..views_of_batch.len() * faces];
-        parts
-            .par_chunks_mut(faces)
-            .zip(views_of_batch)
-            .with_min_len(views_of_batch.len().div_ceil(pictures))
-            .try_for_each(|(parts, &view)| {
-                let total = views.len() as u64;
-                progress.step("visibility", done.fetch_add(1, Ordering::Relaxed), total)?;
-                let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-                let mut sight = lock().pop().unwrap_or_else(SeenParts::new);
-                let camera = (&cameras, view as usize);
-                sight.look(&pieces, camera, options, parts);
-                lock().push(sight);
-                Ok(())
-            })?;
+        let least = views_of_batch.len().div_ceil(pictures);
+        parallel::try_for_chunks(parts, faces, least, |i, parts| {
+            let total = views.len() as u64;
+            progress.step("visibility", done.fetch_add(1, Ordering::Relaxed), total)?;
+            let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut sight = lock().pop().unwrap_or_else(SeenParts::new);
+            let camera = (&cameras, views_of_batch[i] as usize);
+            sight.look(&pieces, camera, options, parts);
+            lock().push(sight);
+            Ok(())
+        })?;
         watch(parts);
         counts.add(views_of_batch, parts, &cameras, &normals);
     }
@@ -155,29 +152,24 @@ impl Counts {
     /// Adds what `views` see: `parts` holds all faces of the first, then of the next.
     fn add(&mut self, views: &[u32], parts: &[u16], cameras: &Cameras, normals: &[DVec3]) {
         let faces = normals.len();
-        self.views
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, counts)| {
-                for i in 0..views.len() {
-                    let parts = &parts[i * faces + chunk * CHUNK..][..counts.len()];
-                    for (count, &part) in counts.iter_mut().zip(parts) {
-                        *count += u32::from(part > 0);
-                    }
+        parallel::for_chunks(&mut self.views, CHUNK, |chunk, counts| {
+            for i in 0..views.len() {
+                let parts = &parts[i * faces + chunk * CHUNK..][..counts.len()];
+                for (count, &part) in counts.iter_mut().zip(parts) {
+                    *count += u32::from(part > 0);
+                }
+            }
+        });
+        for (side, sign) in [(&mut self.front, 1.0), (&mut self.back, -1.0)] {
+            parallel::for_chunks(side, CHUNK, |chunk, sums| {
+                let first = chunk * CHUNK;
+                let normals = &normals[first..first + sums.len()];
+                for (i, &view) in views.iter().enumerate() {
+                    let factor = sign * cameras.weights[view as usize];
+                    let towards = cameras.towards[view as usize] * factor;
+                    add_view(sums, &parts[i * faces + first..], normals, towards);
                 }
             });
-        for (side, sign) in [(&mut self.front, 1.0), (&mut self.back, -1.0)] {
-            side.par_chunks_mut(CHUNK)
-                .enumerate()
-                .for_each(|(chunk, sums)| {
-                    let first = chunk * CHUNK;
-                    let normals = &normals[first..first + sums.len()];
-                    for (i, &view) in views.iter().enumerate() {
-                        let factor = sign * cameras.weights[view as usize];
-                        let towards = cameras.towards[view as usize] * factor;
-                        add_view(sums, &parts[i * faces + first..], normals, towards);
-                    }
-                });
         }
     }
 }

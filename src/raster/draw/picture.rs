@@ -6,7 +6,10 @@ use super::{
     FaceGeometry, Grid, Paint, Projector, Scene, Setup, Shader,
     zbuffer::{EMPTY, ZBuffer},
 };
-use crate::view::{Interpolation, View, ViewSet};
+use crate::{
+    parallel,
+    view::{Interpolation, View, ViewSet},
+};
 
 /// A picture of one view, at sample resolution.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +28,7 @@ fn draw<T: Copy>(
     set: &ViewSet,
     tones: impl FnOnce(&Grid<u64>) -> Grid<T>,
 ) -> Picture<T> {
-    let mut buffer = ZBuffer::new(rayon::current_num_threads());
+    let mut buffer = ZBuffer::new(parallel::threads());
     buffer.draw(scene, view, set);
     let dropped = buffer.dropped();
     let keys = buffer.into_keys();

@@ -6,11 +6,10 @@
 //! associative, so parts of the triangles can be drawn on their own and merged, and neither the number of parts nor
 //! the order of triangles changes a bit.
 
-use rayon::prelude::*;
-
 use super::{Drawn, Grid, Paint, PixelRect, Projector, Scene, projector::ScreenPoint};
 use crate::{
     num::fixed::SubpixelBits,
+    parallel,
     view::{Cull, View, ViewSet},
 };
 
@@ -59,13 +58,13 @@ impl ZBuffer {
         }
         let positions = scene.positions();
         self.points.resize(positions.len(), ScreenPoint::OUTSIDE);
-        let project = |(points, positions): (&mut [ScreenPoint], &[glam::DVec3])| {
+        let project = |points: &mut [ScreenPoint], positions: &[glam::DVec3]| {
             for (point, &p) in points.iter_mut().zip(positions) {
                 *point = projector.point(p);
             }
         };
         if parts == 1 {
-            project((&mut self.points, positions));
+            project(&mut self.points, positions);
             let range = 0..count;
             self.dropped = draw_part(
                 scene,
@@ -78,36 +77,27 @@ impl ZBuffer {
             return;
         }
         let share = positions.len().div_ceil(parts).max(1);
-        self.points
-            .par_chunks_mut(share)
-            .zip(positions.par_chunks(share))
-            .for_each(project);
+        parallel::for_chunks(&mut self.points, share, |i, points| {
+            project(points, &positions[i * share..]);
+        });
         let points = &self.points;
-        self.dropped = self
-            .parts
-            .par_iter_mut()
-            .enumerate()
-            .map(|(i, plane)| {
-                let range = i * count / parts..(i + 1) * count / parts;
-                draw_part(scene, view, &projector, points, range, plane)
-            })
-            .sum();
+        let dropped = parallel::sum_mut(&mut self.parts, &|i, plane| {
+            let range = i * count / parts..(i + 1) * count / parts;
+            draw_part(scene, view, &projector, points, range, plane) as i64
+        });
+        self.dropped = dropped as u64;
         let [first, others @ ..] = self.parts.as_mut_slice() else {
             return;
         };
         let rows = (first.values().len() / parts).max(1);
-        first
-            .values_mut()
-            .par_chunks_mut(rows)
-            .enumerate()
-            .for_each(|(i, keys)| {
-                for other in others.iter() {
-                    let other = &other.values()[i * rows..][..keys.len()];
-                    for (key, &k) in keys.iter_mut().zip(other) {
-                        *key = (*key).min(k);
-                    }
+        parallel::for_chunks(first.values_mut(), rows, |i, keys| {
+            for other in others.iter() {
+                let other = &other.values()[i * rows..][..keys.len()];
+                for (key, &k) in keys.iter_mut().zip(other) {
+                    *key = (*key).min(k);
                 }
-            });
+            }
+        });
     }
 
     /// `depth << 32 | id` of the nearest triangle at every sample of the last picture, or `u64::MAX` for the

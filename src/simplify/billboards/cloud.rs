@@ -1,7 +1,6 @@
 //! The cloud: planes become quads, and what finds no plane stays as it is.
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
 use super::{
     Displacement, Limit, Options, Quad,
@@ -18,6 +17,7 @@ use crate::{
     bound::{planar::Interval, view_cell::ViewCell},
     mesh::Mesh,
     num::math,
+    parallel,
 };
 
 /// The resolution of textures where no angle asks for one.
@@ -81,10 +81,7 @@ pub fn billboards(
         }
     }
     let mut quads = Vec::new();
-    let vertical: Vec<Option<Quad>> = slabs
-        .par_iter()
-        .map(|slab| scene.vertical(slab, &faces, &tree))
-        .collect();
+    let vertical = parallel::map_slice(&slabs, |slab| scene.vertical(slab, &faces, &tree));
     for (slab, quad) in slabs.iter().zip(vertical) {
         match quad {
             Some(quad) => quads.push(quad),
@@ -99,10 +96,9 @@ pub fn billboards(
     kept.sort_unstable();
     progress.step("measure displacements", 0, 0)?;
     let eyes = eyes(mesh, cell, options.up);
-    let displacements: Vec<Displacement> = quads
-        .par_iter()
-        .map(|quad| displacement(mesh, quad, &scene.plan_cell, options.up, eyes))
-        .collect();
+    let displacements = parallel::map_slice(&quads, |quad| {
+        displacement(mesh, quad, &scene.plan_cell, options.up, eyes)
+    });
     let displacement = displacements
         .into_iter()
         .fold(Displacement::default(), Displacement::and);
@@ -180,7 +176,7 @@ impl Scene<'_> {
             let interval = flat::heights(self.mesh, t, self.cell, up, self.options.limit);
             (interval, t)
         };
-        let bounded: Vec<(Interval, u32)> = triangles.par_iter().map(bound).collect();
+        let bounded: Vec<(Interval, u32)> = parallel::map_slice(&triangles, bound);
         let levels = if self.options.any_height {
             let height = |&t: &u32| up.height(self.mesh.corners(t as usize)[0]);
             let (low, high) = (

@@ -5,8 +5,6 @@
 
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
 use super::Cloud;
 use crate::{
     Error, Progress, Result,
@@ -14,6 +12,7 @@ use crate::{
     io,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts},
     num::Precision,
+    parallel,
 };
 
 /// The mesh of a cloud: two triangles per quad with texture coordinates and a material, then the triangles that stay.
@@ -75,17 +74,12 @@ pub fn write(
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
     let total = cloud.quads.len() as u64;
     let done = std::sync::atomic::AtomicU64::new(0);
-    cloud
-        .quads
-        .par_iter()
-        .enumerate()
-        .map(|(i, quad)| {
-            let before = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            progress.step("draw textures", before, total)?;
-            let texture = quad.texture(original);
-            png::write_rgba(&folder.join(format!("{}.png", name(i))), &texture)
-        })
-        .collect::<Result<Vec<()>>>()?;
+    parallel::try_map(cloud.quads.len(), |i| {
+        let before = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        progress.step("draw textures", before, total)?;
+        let texture = cloud.quads[i].texture(original);
+        png::write_rgba(&folder.join(format!("{}.png", name(i))), &texture)
+    })?;
     let mut library = String::new();
     for i in 0..cloud.quads.len() {
         let name = name(i);

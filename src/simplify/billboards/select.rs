@@ -10,7 +10,6 @@
 //! faces all find a place on others are dropped.
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::{
     Options,
@@ -19,7 +18,7 @@ use super::{
     sweep::{Stab, Sweep},
     tree::PlanTree,
 };
-use crate::{Progress, Result, bound::planar::Interval};
+use crate::{Progress, Result, bound::planar::Interval, parallel};
 
 /// A vertical plane and the faces that are projected on it.
 #[derive(Clone, Debug)]
@@ -64,22 +63,14 @@ pub(super) fn select(
     let bearings = grid(faces, options);
     progress.step("bound faces", 0, bearings.len() as u64)?;
     let numbers = 0..faces.len() as u32;
-    let sweeps: Vec<Option<Sweep>> = bearings
-        .par_iter()
-        .map(|&bearing| {
-            let limits = selection.limits(bearing);
-            let sweep = || Sweep::new(faces, numbers.clone(), &limits);
-            (!progress.interrupted()).then(sweep)
-        })
-        .collect();
+    let mut sweeps = parallel::filter_map(bearings.len(), |i| {
+        let limits = selection.limits(bearings[i]);
+        let sweep = || Sweep::new(faces, numbers.clone(), &limits);
+        (!progress.interrupted()).then(sweep)
+    });
     progress.step("bound faces", bearings.len() as u64, bearings.len() as u64)?;
-    let mut sweeps: Vec<Sweep> = sweeps.into_iter().flatten().collect();
     selection.values = shares(&sweeps, faces.len());
-    let mut stabs: Vec<Stab> = sweeps
-        .par_iter_mut()
-        .zip(&bearings)
-        .map(|(sweep, &bearing)| selection.best(sweep, bearing))
-        .collect();
+    let mut stabs = parallel::map_mut(&mut sweeps, |i, sweep| selection.best(sweep, bearings[i]));
     let mut slabs: Vec<Slab> = Vec::new();
     let mut alone = Vec::new();
     let mut left = faces.len();
@@ -121,17 +112,19 @@ pub(super) fn select(
 
 /// What every face is worth.
 fn shares(sweeps: &[Sweep], faces: usize) -> Vec<u64> {
-    let alone = || vec![1; faces];
-    let most = sweeps
-        .par_iter()
-        .fold(alone, |mut most, sweep| {
+    let of_parts = parallel::collect(sweeps.len(), 1, |range, parts| {
+        let mut most = vec![1; faces];
+        for sweep in &sweeps[range] {
             sweep.fullest(&mut most);
-            most
-        })
-        .reduce(alone, |mut a, b| {
-            a.iter_mut().zip(b).for_each(|(a, b)| *a = b.max(*a));
-            a
-        });
+        }
+        parts.push(most);
+    });
+    let mut most = vec![1; faces];
+    for part in of_parts {
+        for (a, b) in most.iter_mut().zip(part) {
+            *a = b.max(*a);
+        }
+    }
     most.into_iter()
         .map(|most| WHOLE / u64::from(most))
         .collect()
@@ -176,12 +169,11 @@ impl Selection<'_> {
     /// The faces of some value that may be projected on a plane.
     fn valid(&self, bearing: Bearing, rho: f64) -> Vec<u32> {
         let limits = self.limits(bearing);
-        self.tree
-            .at(&limits, rho)
-            .into_par_iter()
-            .filter(|&face| self.values[face as usize] > 0)
-            .filter(|&face| self.faces[face as usize].fits(&limits, rho))
-            .collect()
+        let found = self.tree.at(&limits, rho);
+        let is_valid = |&face: &u32| {
+            self.values[face as usize] > 0 && self.faces[face as usize].fits(&limits, rho)
+        };
+        parallel::filter_map(found.len(), |i| Some(found[i]).filter(is_valid))
     }
 
     /// A plane near the given one that takes at least as much.
@@ -204,41 +196,38 @@ impl Selection<'_> {
             min: stab.rho,
             max: stab.rho,
         };
-        let near: Vec<u32> = self
-            .tree
-            .near(&limits, offsets, (2.0 * reach, centre))
-            .into_par_iter()
-            .filter(|&face| self.values[face as usize] > 0)
-            .filter(|&face| {
-                let slack = reach * middle(face).distance(centre);
-                let wanted = Interval {
-                    min: stab.rho - 2.0 * slack,
-                    max: stab.rho + 2.0 * slack,
-                };
-                let face = &self.faces[face as usize];
-                face.may_reach(&limits, wanted) && {
-                    let interval = face.interval(&limits);
-                    interval.min <= wanted.max && wanted.min <= interval.max
-                }
-            })
-            .collect();
+        let is_near = |&face: &u32| {
+            if self.values[face as usize] == 0 {
+                return false;
+            }
+            let slack = reach * middle(face).distance(centre);
+            let wanted = Interval {
+                min: stab.rho - 2.0 * slack,
+                max: stab.rho + 2.0 * slack,
+            };
+            let face = &self.faces[face as usize];
+            face.may_reach(&limits, wanted) && {
+                let interval = face.interval(&limits);
+                interval.min <= wanted.max && wanted.min <= interval.max
+            }
+        };
+        let near = self.tree.near(&limits, offsets, (2.0 * reach, centre));
+        let near = parallel::filter_map(near.len(), |i| Some(near[i]).filter(is_near));
         let mut best = (stab, bearing);
         for _ in 0..HALVINGS {
             let Turn { whole, slant } = step;
             let turns = [(-whole, 0.0), (whole, 0.0), (0.0, -slant), (0.0, slant)];
-            let tried: Vec<Option<(Stab, Bearing)>> = turns
-                .into_par_iter()
-                .map(|(whole, slant)| {
-                    if whole == 0.0 && slant == 0.0 {
-                        return None;
-                    }
-                    let bearing = best.1.turned(Turn { whole, slant })?;
-                    let limits = self.limits(bearing);
-                    let mut sweep = Sweep::new(self.faces, near.iter().copied(), &limits);
-                    Some((self.best(&mut sweep, bearing), bearing))
-                })
-                .collect();
-            for found in tried.into_iter().flatten() {
+            let tried = parallel::filter_map(turns.len(), |i| {
+                let (whole, slant) = turns[i];
+                if whole == 0.0 && slant == 0.0 {
+                    return None;
+                }
+                let bearing = best.1.turned(Turn { whole, slant })?;
+                let limits = self.limits(bearing);
+                let mut sweep = Sweep::new(self.faces, near.iter().copied(), &limits);
+                Some((self.best(&mut sweep, bearing), bearing))
+            });
+            for found in tried {
                 if found.0.gain > best.0.gain {
                     best = found;
                 }
@@ -253,15 +242,12 @@ impl Selection<'_> {
 
     /// For every face the planes that take it, in their order.
     fn homes(&self, slabs: &[Slab]) -> Vec<Vec<u32>> {
-        let taken: Vec<Vec<u32>> = slabs
-            .par_iter()
-            .map(|slab| {
-                let limits = self.limits(slab.bearing);
-                let mut near = self.tree.at(&limits, slab.rho);
-                near.retain(|&face| self.faces[face as usize].fits(&limits, slab.rho));
-                near
-            })
-            .collect();
+        let taken = parallel::map_slice(slabs, |slab| {
+            let limits = self.limits(slab.bearing);
+            let mut near = self.tree.at(&limits, slab.rho);
+            near.retain(|&face| self.faces[face as usize].fits(&limits, slab.rho));
+            near
+        });
         let mut homes = vec![Vec::new(); self.faces.len()];
         for (slab, faces) in (0_u32..).zip(taken) {
             for face in faces {

@@ -6,12 +6,12 @@
 //! its sides from the original. Units: frame units cubed. Not in the papers.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::{
     collapse::{LiveMesh, Patch, Star},
     metric::Proximity,
     num::math::{length, sqrt},
+    parallel,
 };
 
 /// How much of the least squares' trace holds a vertex where it is: sideways in a flat place nothing else does.
@@ -40,10 +40,9 @@ impl<'a> Deviation<'a> {
             total: 0.0,
             weight,
         };
-        let faces: Vec<f64> = (0..live.triangle_ids())
-            .into_par_iter()
-            .filter_map(|t| Some(deviation.of(live.points(t)?, &mut 0)))
-            .collect();
+        let faces = parallel::filter_map(live.triangle_ids() as usize, |t| {
+            Some(deviation.of(live.points(t as u32)?, &mut 0))
+        });
         deviation.total = faces.iter().sum();
         Some(deviation)
     }

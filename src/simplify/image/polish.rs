@@ -13,7 +13,6 @@
 
 use std::{collections::VecDeque, sync::Mutex};
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -24,6 +23,7 @@ use crate::{
     Progress, Result,
     collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, flip, unfolded},
     metric::Sides,
+    parallel,
     raster::{Unrender, ViewSubset},
 };
 
@@ -267,18 +267,15 @@ impl<E: Unrender> Polisher<'_, E> {
         items: &[T],
         work: impl Fn(&Self, &mut Search<E::Scratch>, &T) -> R + Sync,
     ) -> Vec<R> {
-        items
-            .par_iter()
-            .map(|item| {
-                let taken = self.pool.lock().ok().and_then(|mut pool| pool.pop());
-                let mut search = taken.unwrap_or_else(|| Search::new(&self.pictures));
-                let result = work(self, &mut search, item);
-                if let Ok(mut pool) = self.pool.lock() {
-                    pool.push(search);
-                }
-                result
-            })
-            .collect()
+        parallel::map_slice(items, |item| {
+            let taken = self.pool.lock().ok().and_then(|mut pool| pool.pop());
+            let mut search = taken.unwrap_or_else(|| Search::new(&self.pictures));
+            let result = work(self, &mut search, item);
+            if let Ok(mut pool) = self.pool.lock() {
+                pool.push(search);
+            }
+            result
+        })
     }
 
     /// Makes the move that a search found, unless it is no longer one for the better; `stale` where the pictures have

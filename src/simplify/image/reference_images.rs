@@ -1,9 +1,7 @@
 //! What pictures of a mesh are held against.
 
-use rayon::prelude::*;
-
 use crate::{
-    Error, Progress, Result,
+    Error, Progress, Result, parallel,
     raster::{Grid, Scene, luma_sums},
     view::ViewSet,
 };
@@ -21,18 +19,14 @@ impl Reference {
     /// # Errors
     /// [`Error::Interrupted`].
     pub fn draw(original: &Scene, set: ViewSet, progress: &dyn Progress) -> Result<Self> {
-        let views = set.views.par_iter();
-        let sums = views.map(|view| {
+        let sums = parallel::try_map(set.views.len(), |i| {
             // Other work reports meanwhile.
             if progress.interrupted() {
                 return Err(Error::Interrupted);
             }
-            Ok(luma_sums(original, view, &set))
-        });
-        Ok(Self {
-            sums: sums.collect::<Result<_>>()?,
-            set,
-        })
+            Ok(luma_sums(original, &set.views[i], &set))
+        })?;
+        Ok(Self { sums, set })
     }
 
     /// The views, and what is common to their pictures.

@@ -1,7 +1,6 @@
 //! ID buffers by ray casting.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::{
     hierarchy::Hierarchy,
@@ -10,6 +9,7 @@ use super::{
 use crate::{
     Progress, Result,
     mesh::Mesh,
+    parallel,
     raster::Grid,
     view::{View, ViewSet},
 };
@@ -57,23 +57,22 @@ impl RayCaster {
                 return Err(crate::Error::Interrupted);
             }
             let first = i as u32 * ROWS;
-            rows.par_chunks_mut(width.max(1) as usize)
-                .zip(first..height)
-                .for_each(|(row, y)| {
-                    for (key, x) in row.iter_mut().zip(0..width) {
-                        let ray = rays.ray(i64::from(x), i64::from(y));
-                        let line = line(
-                            planes[0][x as usize],
-                            // Rows count downwards, planes upwards.
-                            planes[1][(height - 1 - y) as usize],
-                        );
-                        self.hierarchy.candidates(line.as_ref(), |t| {
-                            if let Some(hit) = rays.hit(ray, self.triangles[t as usize]) {
-                                *key = (*key).min(u64::from(hit.depth) << 32 | u64::from(t));
-                            }
-                        });
-                    }
-                });
+            parallel::for_chunks(rows, width.max(1) as usize, |i, row| {
+                let y = first + i as u32;
+                for (key, x) in row.iter_mut().zip(0..width) {
+                    let ray = rays.ray(i64::from(x), i64::from(y));
+                    let line = line(
+                        planes[0][x as usize],
+                        // Rows count downwards, planes upwards.
+                        planes[1][(height - 1 - y) as usize],
+                    );
+                    self.hierarchy.candidates(line.as_ref(), |t| {
+                        if let Some(hit) = rays.hit(ray, self.triangles[t as usize]) {
+                            *key = (*key).min(u64::from(hit.depth) << 32 | u64::from(t));
+                        }
+                    });
+                }
+            });
         }
         Ok(keys)
     }

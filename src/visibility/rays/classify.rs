@@ -11,7 +11,6 @@
 //! be there and that nothing certainly hides. Every other difference is a bug, and in a view that needs no rounding
 //! (every vertex on the sub-pixel grid, every depth a multiple of 2^-32) every difference is one.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
@@ -21,7 +20,7 @@ use super::{
     intersect::Rays,
 };
 use crate::{
-    Error, Progress, Result,
+    Error, Progress, Result, parallel,
     raster::Grid,
     view::{View, ViewSet},
 };
@@ -220,14 +219,12 @@ impl RayCaster {
             if progress.interrupted() {
                 return Err(Error::Interrupted);
             }
-            let found: Vec<_> = (first..height.min(first + 64))
-                .into_par_iter()
-                .map(|y| {
-                    let row = y * width..(y + 1) * width;
-                    let (raster, cast) = (&raster.values()[row.clone()], &cast.values()[row]);
-                    judge.row(y as u32, raster, cast)
-                })
-                .collect();
+            let found = parallel::map((height - first).min(64), |i| {
+                let y = first + i;
+                let row = y * width..(y + 1) * width;
+                let (raster, cast) = (&raster.values()[row.clone()], &cast.values()[row]);
+                judge.row(y as u32, raster, cast)
+            });
             for (y, (row, seen)) in (first..).zip(found) {
                 classes.values_mut()[y * width..][..width].copy_from_slice(&row);
                 witnesses.extend(seen);

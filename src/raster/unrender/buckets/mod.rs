@@ -9,11 +9,11 @@ mod lines;
 mod view;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use self::view::{BucketView, PartScratch};
 use super::{Change, Model, Unrender, ViewSubset};
 use crate::{
+    parallel,
     raster::{FaceGeometry, Grid},
     view::ViewSet,
 };
@@ -51,12 +51,10 @@ impl Unrender for BucketEngine {
     type Scratch = BucketScratch;
 
     fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
-        let views = set
-            .views
-            .par_iter()
-            .zip(reference)
-            .map(|(view, reference)| BucketView::new(&model, view, set, reference))
-            .collect();
+        let views = set.views.iter().zip(reference).collect();
+        let views = parallel::map_vec(views, |(view, reference)| {
+            BucketView::new(&model, view, set, reference)
+        });
         Self { model, views }
     }
 
@@ -68,10 +66,7 @@ impl Unrender for BucketEngine {
     }
 
     fn lone_scratch(&self) -> BucketScratch {
-        let parts = rayon::current_num_threads()
-            .min(PARTS)
-            .min(self.views.len())
-            .max(1);
+        let parts = parallel::threads().min(PARTS).min(self.views.len()).max(1);
         let part = PartScratch::new(self.model.corners.len());
         BucketScratch {
             geometry: Vec::new(),
@@ -126,7 +121,7 @@ fn in_parts<V: Send>(
         _ => {
             let (left, right) = parts.split_at_mut(parts.len() / 2);
             let rest = views.split_off(views.len() * left.len() / (left.len() + right.len()));
-            let (a, b) = rayon::join(
+            let (a, b) = parallel::join(
                 || in_parts(views, left, work),
                 || in_parts(rest, right, work),
             );

@@ -14,8 +14,6 @@ mod probe;
 mod projected;
 mod view;
 
-use rayon::prelude::*;
-
 use self::{
     change_set::ChangeSet,
     probe::ViewDelta,
@@ -23,7 +21,7 @@ use self::{
     view::{LayerView, ProbeContext},
 };
 use super::{Change, Model, Unrender, ViewSubset};
-use crate::{raster::Grid, view::ViewSet};
+use crate::{parallel, raster::Grid, view::ViewSet};
 
 /// Views that a part has bits for.
 const MOST_VIEWS: usize = 64;
@@ -272,17 +270,14 @@ impl Unrender for LayerEngine {
     fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
         let colored = !model.colors.is_empty();
         let count = set.views.len();
-        let threads = rayon::current_num_threads().min(PARTS);
+        let threads = parallel::threads().min(PARTS);
         let part_count = threads
             .min(count / FEWEST_VIEWS)
             .max(count.div_ceil(MOST_VIEWS))
             .max(1);
-        let views: Vec<LayerView> = set
-            .views
-            .par_iter()
-            .zip(reference)
-            .map(|(view, y0)| LayerView::new(&model, view, set, y0.values(), colored))
-            .collect();
+        let views = parallel::map(count, |i| {
+            LayerView::new(&model, &set.views[i], set, reference[i].values(), colored)
+        });
         let flat = colored || views.iter().any(|view| !view.is_gouraud());
         let mut views: Vec<(usize, LayerView)> = views.into_iter().enumerate().collect();
         views.sort_by_key(|(_, view)| view.is_gouraud());
@@ -290,10 +285,7 @@ impl Unrender for LayerEngine {
         for (turn, view) in views.into_iter().enumerate() {
             dealt[turn % part_count].push(view);
         }
-        let parts = dealt
-            .into_par_iter()
-            .map(|views| Part::new(&model, views))
-            .collect();
+        let parts = parallel::map_vec(dealt, |views| Part::new(&model, views));
         Self {
             model,
             parts,
@@ -330,18 +322,18 @@ impl Unrender for LayerEngine {
     fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut LayerScratch) -> i64 {
         scratch.changes.fill(&self.model, change, self.flat);
         let (model, changes) = (&self.model, &scratch.changes);
-        let work = |(part, scratch): (&Part, &mut PartScratch)| {
+        let work = |i: usize, scratch: &mut PartScratch| {
+            let part = &self.parts[i];
             let lanes = each(all(part.views.len()));
             let lanes = lanes.filter(|lane| views.contains(part.indices[*lane]));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
             part.evaluate(model, change, changes, lanes, scratch)
         };
         if scratch.lone && self.parts.len() > 1 {
-            let pairs = self.parts.par_iter().zip(&mut scratch.parts);
-            pairs.map(work).sum()
+            parallel::sum_mut(&mut scratch.parts, &work)
         } else {
-            let pairs = self.parts.iter().zip(&mut scratch.parts);
-            pairs.map(work).sum()
+            let parts = scratch.parts.iter_mut().enumerate();
+            parts.map(|(i, part)| work(i, part)).sum()
         }
     }
 
@@ -351,11 +343,12 @@ impl Unrender for LayerEngine {
         let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
             part.commit(model, change, changes, scratch)
         };
-        let sum = if self.parts.len() > 1 {
-            let pairs = self.parts.par_iter_mut().zip(&mut scratch.parts);
-            pairs.map(work).sum()
+        let count = self.parts.len();
+        let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
+        let sum = if count > 1 {
+            let mut pairs: Vec<_> = pairs.collect();
+            parallel::sum_mut(&mut pairs, &|_, (part, scratch)| work((part, scratch)))
         } else {
-            let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
             pairs.map(work).sum()
         };
         self.model.apply(change);
