@@ -38,17 +38,18 @@
 //! Data flows one way; an import only points to the left, and a test holds the table of allowed imports.
 //!
 //! ```text
-//! error, num -> mesh -> io            encode: low, used by all
-//!                |
-//!                +-> view -> raster -> metric --+     pictures
-//!                |             +-> visibility --+
-//!                +-> bound ---------------------+
-//!                +-> collapse ------------------+-> simplify -> selfcheck -> cli     surgery meets pictures in simplify
+//! error, num -> geometry -> mesh -> io            encode: low, used by all
+//!                            |
+//!                            +-> view -> raster -> metric --+     pictures
+//!                            |             +-> visibility --+
+//!                            +-> bound ---------------------+
+//!                            +-> collapse ------------------+-> simplify -> selfcheck -> cli
 //! ```
 //!
 //! | module | owns |
 //! |---|---|
 //! | `num` | where a float becomes fixed point, the only callers of sqrt and libm, the scaled frame |
+//! | `geometry` | symmetric 3x3 matrices, boxes, triangles, the one tree over triangles |
 //! | `mesh` | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
 //! | `io` | OBJ, PLY and STL, in and out; hostile input ends here |
 //! | `view` | cameras, the minimum bounding sphere, view sets and view files |
@@ -99,6 +100,10 @@ mod collapse;
 pub mod encode;
 #[cfg(not(feature = "internals"))]
 mod encode;
+#[cfg(feature = "internals")]
+pub mod geometry;
+#[cfg(not(feature = "internals"))]
+mod geometry;
 #[cfg(feature = "internals")]
 pub mod io;
 #[cfg(not(feature = "internals"))]

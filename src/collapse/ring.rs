@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use super::{LiveMesh, Patch, PatchFace, patch::Move, wedge};
+pub(super) use crate::geometry::area_normal as normal;
 
 /// Where the rules let the new vertex be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -479,11 +480,4 @@ fn root(parents: &mut [usize], mut at: usize) -> usize {
         at = parents[at];
     }
     at
-}
-
-/// Twice the area of a triangle along its normal.
-#[inline]
-#[must_use]
-pub(super) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
 }

@@ -13,7 +13,7 @@ use super::{
     Changes, Counters, Engine, LiveMesh, Method, NONE, Observer, Patch, Proposal, Refusal, Ring,
     Rules, Schedule, Site, Target,
 };
-use crate::{Error, Progress, Result, parallel};
+use crate::{Error, Progress, Result, geometry::Box3, parallel};
 
 /// A method that can work on parts of a mesh at the same time.
 pub trait Divisible: Method + Send + Sized {
@@ -264,18 +264,7 @@ fn split(live: &LiveMesh, ids: &mut [u32], most: usize, first: f64, boxes: &mut 
         return;
     }
     let place = |v: u32| live.position(v);
-    let start = place(ids[0]);
-    let (low, high) = ids.iter().fold((start, start), |(low, high), &v| {
-        (low.min(place(v)), high.max(place(v)))
-    });
-    let d = high - low;
-    let axis = if d.x >= d.y && d.x >= d.z {
-        0
-    } else if d.y >= d.z {
-        1
-    } else {
-        2
-    };
+    let axis = Box3::of(ids.iter().map(|&v| place(v))).map_or(0, |all| all.longest_axis());
     let at = ((ids.len() as f64 * first) as usize).clamp(1, ids.len() - 1);
     ids.select_nth_unstable_by(at, |&a, &b| {
         place(a)[axis].total_cmp(&place(b)[axis]).then(a.cmp(&b))

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::{Edge, Edges, Mesh, VertexTriangles, compare_rows, topology::Topology, unite};
-use crate::num::{Frame, math};
+use crate::{geometry::double_area, num::Frame};
 
 /// One kind of finding: how often it occurs and the first places where it does.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -239,8 +239,7 @@ impl Surface {
                 degenerate.add(&[t as u32]);
                 continue;
             }
-            let [a, b, c] = mesh.corners(t).map(|p| frame.enter(p));
-            let doubled = math::length((b - a).cross(c - a));
+            let doubled = double_area(mesh.corners(t).map(|p| frame.enter(p)));
             if doubled == 0.0 {
                 zero_area.add(&[t as u32]);
             }

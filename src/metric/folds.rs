@@ -8,9 +8,10 @@
 
 use glam::DVec3;
 
-use super::{Proximity, surface::frame_and_diagonal};
+use super::surface::frame_and_diagonal;
 use crate::{
     Progress, Result,
+    geometry::{TriangleTree, area_normal},
     mesh::{Edges, Mesh},
     num::math::{length, sqrt},
     parallel,
@@ -55,7 +56,7 @@ pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Res
 /// What a reference has near some faces: its folded edges and its sides.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
-    creases: Option<Proximity>,
+    creases: Option<TriangleTree>,
     sides: Option<Sides>,
     reach: f64,
 }
@@ -67,7 +68,7 @@ impl Surroundings {
     pub fn of(part: &Mesh, reach: f64) -> Self {
         let creases = folded(part).into_iter().map(|[a, b]| [a, b, b]);
         Self {
-            creases: Proximity::new(creases.collect()),
+            creases: TriangleTree::new(creases.collect()),
             sides: Sides::of_part(part, reach),
             reach,
         }
@@ -96,7 +97,7 @@ impl Surroundings {
 /// The surface of a mesh, and which way it looks.
 #[derive(Clone, Debug)]
 pub struct Sides {
-    surface: Proximity,
+    surface: TriangleTree,
     reach: f64,
 }
 
@@ -111,13 +112,13 @@ impl Sides {
 
     /// As [`Sides::new`], of a part of a surface that is near for what is within `reach`.
     pub(crate) fn of_part(part: &Mesh, reach: f64) -> Option<Self> {
-        let surface = Proximity::new(corners(part).collect())?;
+        let surface = TriangleTree::new(corners(part).collect())?;
         Some(Self { surface, reach })
     }
 
     /// The surface.
     #[must_use]
-    pub fn surface(&self) -> &Proximity {
+    pub fn surface(&self) -> &TriangleTree {
         &self.surface
     }
 
@@ -126,7 +127,7 @@ impl Sides {
     #[must_use]
     pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let centroid = ((a + b) + c) / 3.0;
-        let normal = (b - a).cross(c - a);
+        let normal = area_normal([a, b, c]);
         self.surface
             .looks_along(centroid, normal, self.reach * self.reach)
     }
@@ -134,7 +135,7 @@ impl Sides {
     /// True where all of the surface around a face looks the other way. Faces without area have no side.
     #[must_use]
     pub fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
-        let normal = (b - a).cross(c - a);
+        let normal = area_normal([a, b, c]);
         let centroid = ((a + b) + c) / 3.0;
         if normal.dot(normal) <= 0.0 || self.agrees([a, b, c]) {
             return false;
@@ -166,7 +167,7 @@ fn folded(mesh: &Mesh) -> Vec<[DVec3; 2]> {
             let t = mesh.triangles()[face as usize];
             let [a, b, c] = t.map(|v| positions[v as usize]);
             let runs = (0..3).any(|k| [t[k], t[(k + 1) % 3]] == edge);
-            let normal = (b - a).cross(c - a);
+            let normal = area_normal([a, b, c]);
             if runs == forward { normal } else { -normal }
         };
         let (a, b) = (normal(first, true), normal(second, false));

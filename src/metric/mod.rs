@@ -11,13 +11,9 @@ pub mod difference;
 mod difference_strip;
 pub mod folds;
 pub mod luma;
-mod proximity;
 pub mod silhouette;
 pub mod surface;
-mod triangle;
 
 pub use difference_strip::difference_strip;
-pub use triangle::closest_point;
 
 pub use folds::{Sides, Surroundings};
-pub use proximity::Proximity;

@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use crate::{
     Error, Progress, Result,
+    geometry::Triangle,
     mesh::{Edges, Mesh},
     parallel,
     view::Eye,
@@ -105,31 +106,13 @@ fn is_silhouette(mesh: &Mesh, [u, w]: [u32; 2], triangles: &[u32], facing: &[i8]
 }
 
 /// 1 where the triangle shows its front (counter-clockwise corners) to the eye, -1 its back, 0 edge-on.
-fn facing(mut corners: [DVec3; 3], eye: Eye) -> i8 {
-    // Ascending order; every swap turns the triangle over.
-    let mut parity = 1_i8;
-    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
-        let (p, q) = (corners[i], corners[j]);
-        let order =
-            p.x.total_cmp(&q.x)
-                .then(p.y.total_cmp(&q.y))
-                .then(p.z.total_cmp(&q.z));
-        if order.is_gt() {
-            corners.swap(i, j);
-            parity = -parity;
-        }
-    }
-    let [a, b, c] = corners;
-    let normal = (b - a).cross(c - a);
+fn facing(corners: [DVec3; 3], eye: Eye) -> i8 {
+    // Its corners are in ascending order: the sign does not depend on which one is first.
+    let triangle = Triangle::new(corners);
+    let normal = triangle.area_normal();
     let toward = match eye {
-        Eye::Point(eye) => normal.dot(eye - a),
+        Eye::Point(eye) => normal.dot(eye - triangle.corners()[0]),
         Eye::Axis(axis) => normal.dot(axis),
     };
-    if toward > 0.0 {
-        parity
-    } else if toward < 0.0 {
-        -parity
-    } else {
-        0
-    }
+    i8::from(toward > 0.0) - i8::from(toward < 0.0)
 }

@@ -16,9 +16,9 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{proximity::Proximity, triangle::Triangle};
 use crate::{
     Error, Progress, Result,
+    geometry::{Triangle, TriangleTree},
     mesh::Mesh,
     num::{
         Frame,
@@ -180,7 +180,7 @@ struct Surface {
     triangles: Vec<Triangle>,
     /// Those that triangles use, in the order of the mesh.
     vertices: Vec<DVec3>,
-    tree: Proximity,
+    tree: TriangleTree,
 }
 
 /// Distances in frame units.
@@ -260,7 +260,7 @@ impl Surface {
             .iter()
             .map(|t| Triangle::new(t.map(|v| positions[v as usize])))
             .collect();
-        let tree = Proximity::of(triangles.clone()).ok_or_else(|| empty(which))?;
+        let tree = TriangleTree::of(triangles.clone()).ok_or_else(|| empty(which))?;
         Ok(Self {
             triangles,
             vertices,

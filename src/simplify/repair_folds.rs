@@ -14,6 +14,7 @@ use crate::{
     collapse::{
         Changes, Freedom, LiveMesh, Observer, Patch, Rules, Star, foldedness, is_folded, unmirrored,
     },
+    geometry::double_area,
     mesh::Mesh,
     metric::{
         Sides, Surroundings,
@@ -244,10 +245,10 @@ impl Search {
             Freedom::Free => around().chain(normal).collect(),
         };
         let edge = star.mean_edge(live);
-        let areas = star.faces.iter().map(|f| {
-            let [a, b, c] = f.corners.map(|v| live.position(v));
-            math::length((b - a).cross(c - a))
-        });
+        let areas = star
+            .faces
+            .iter()
+            .map(|f| double_area(f.corners.map(|v| live.position(v))));
         let area: f64 = areas.sum();
         let faces = star.faces.iter();
         let flipped = faults.flipped(faces.map(|f| f.corners.map(|v| live.position(v))));

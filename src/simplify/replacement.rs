@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::{
     bound::surface::{Pair, Replacement},
+    geometry::{TriangleTree, closest_point},
     mesh::Mesh,
-    metric::{Proximity, closest_point},
 };
 
 /// A mesh as the replacement of another one: a part of the original goes to the triangle that is nearest to its
@@ -13,7 +13,7 @@ use crate::{
 /// triangles.
 #[derive(Clone, Debug)]
 pub struct NearestTriangle {
-    tree: Proximity,
+    tree: TriangleTree,
 }
 
 impl NearestTriangle {
@@ -21,7 +21,7 @@ impl NearestTriangle {
     #[must_use]
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let corners = originals(mesh).into_iter().map(|pair| pair.from).collect();
-        Proximity::new(corners).map(|tree| Self { tree })
+        TriangleTree::new(corners).map(|tree| Self { tree })
     }
 }
 

@@ -3,8 +3,8 @@
 use super::{MeasureOptions, Visibility, measure};
 use crate::{
     Progress, Result,
+    geometry::double_area,
     mesh::Mesh,
-    num::math,
     view::{directions::OCTAHEDRON_LIMIT, frame_of},
 };
 
@@ -39,10 +39,7 @@ pub fn convergence(
     };
     let truth = with(OCTAHEDRON_LIMIT)?;
     let frame = frame_of(mesh);
-    let area = |t: usize| {
-        let [a, b, c] = mesh.corners(t).map(|p| frame.enter(p));
-        math::length((b - a).cross(c - a))
-    };
+    let area = |t: usize| double_area(mesh.corners(t).map(|p| frame.enter(p)));
     let areas: Vec<f64> = (0..mesh.triangles().len()).map(area).collect();
     let mut steps = Vec::new();
     for octahedron in 0..OCTAHEDRON_LIMIT {

@@ -23,6 +23,7 @@ use super::{
 };
 use crate::{
     Error, Progress, Result,
+    geometry::area_normal,
     mesh::Mesh,
     num::math,
     parallel,
@@ -94,8 +95,8 @@ pub(super) fn count(
         .triangles()
         .iter()
         .map(|t| {
-            let [a, b, c] = t.map(|v| pieces.scene.positions()[v as usize]);
-            math::unit((b - a).cross(c - a)).unwrap_or(DVec3::ZERO)
+            let corners = t.map(|v| pieces.scene.positions()[v as usize]);
+            math::unit(area_normal(corners)).unwrap_or(DVec3::ZERO)
         })
         .collect();
     let mut counts = Counts {

@@ -4,7 +4,7 @@ use super::{
     MeasureOptions,
     counts::{Counts, Weights, count},
 };
-use crate::{Error, Progress, Result, mesh::Mesh, num::math, view::frame_of};
+use crate::{Error, Progress, Result, geometry::double_area, mesh::Mesh, view::frame_of};
 
 /// How visible a mesh and each of its triangles are.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,8 +90,7 @@ impl Visibility {
         let frame = frame_of(mesh);
         let (mut all, mut visible, mut hidden) = (0.0, 0.0, 0.0);
         for (t, &v) in triangles.iter().enumerate() {
-            let [a, b, c] = mesh.corners(t).map(|p| frame.enter(p));
-            let area = 0.5 * math::length((b - a).cross(c - a));
+            let area = 0.5 * double_area(mesh.corners(t).map(|p| frame.enter(p)));
             all += area;
             visible += area * v;
             if counts.views[t] == 0 {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::{Error, Result, num::math, raster::Scene};
+use crate::{Error, Result, geometry::double_area, num::math, raster::Scene};
 
 /// Most pieces that are measured.
 const PIECE_LIMIT: usize = 1 << 24;
@@ -48,10 +48,7 @@ impl Pieces {
             triangles,
             starts,
         } = division;
-        let area = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| positions[v as usize]);
-            0.5 * math::length((b - a).cross(c - a))
-        };
+        let area = |t: &[u32; 3]| 0.5 * double_area(t.map(|v| positions[v as usize]));
         let areas = if starts.is_empty() {
             Vec::new()
         } else {
@@ -107,7 +104,7 @@ impl Division {
         let largest = 0.433 * limit * limit;
         let fewest = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.positions[v as usize]);
-            let by_area = 0.5 * math::length((b - a).cross(c - a)) / largest;
+            let by_area = 0.5 * double_area([a, b, c]) / largest;
             let by_length = math::length(b - a) / limit;
             f64::max(1.0, f64::max(by_area, by_length))
         };
@@ -243,7 +240,7 @@ mod tests {
             let scene = &made.scene;
             let mut next = 0;
             for face in 0..mesh.triangles().len() {
-                let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+                let normal = crate::geometry::area_normal;
                 let whole = mesh.corners(face);
                 let mut sum = 0.0;
                 let range = made.of(face);

@@ -10,24 +10,31 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("progress", &["error"]),
     ("num", &["error"]),
     ("encode", &["error", "num"]),
-    ("mesh", &["error", "num"]),
-    ("io", &["error", "num", "encode", "mesh"]),
-    ("view", &["error", "num", "mesh"]),
-    ("raster", &["error", "progress", "num", "mesh", "view"]),
+    ("geometry", &["error", "num"]),
+    ("mesh", &["error", "num", "geometry"]),
+    ("io", &["error", "num", "encode", "geometry", "mesh"]),
+    ("view", &["error", "num", "geometry", "mesh"]),
+    (
+        "raster",
+        &["error", "progress", "num", "geometry", "mesh", "view"],
+    ),
     (
         "metric",
         &[
-            "error", "progress", "num", "encode", "mesh", "view", "raster",
+            "error", "progress", "num", "encode", "geometry", "mesh", "view", "raster",
         ],
     ),
     (
         "visibility",
         &[
-            "error", "progress", "num", "encode", "mesh", "view", "raster",
+            "error", "progress", "num", "encode", "geometry", "mesh", "view", "raster",
         ],
     ),
-    ("bound", &["error", "progress", "num", "mesh"]),
-    ("collapse", &["error", "progress", "num", "encode", "mesh"]),
+    ("bound", &["error", "progress", "num", "geometry", "mesh"]),
+    (
+        "collapse",
+        &["error", "progress", "num", "encode", "geometry", "mesh"],
+    ),
     (
         "simplify",
         &[
@@ -35,6 +42,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "progress",
             "num",
             "encode",
+            "geometry",
             "mesh",
             "io",
             "view",
@@ -52,6 +60,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "progress",
             "num",
             "encode",
+            "geometry",
             "mesh",
             "io",
             "view",
@@ -69,6 +78,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "progress",
             "num",
             "encode",
+            "geometry",
             "mesh",
             "io",
             "view",

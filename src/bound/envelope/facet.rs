@@ -5,9 +5,14 @@
 //! between two points, a few units in the last place of that difference: [`Facet::distance2`] may be too short by a
 //! relative 1e-14 and no more. Units: those of the positions.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
-use crate::num::math;
+use crate::{
+    geometry::{Box3, TreeItem},
+    num::math,
+};
 
 /// `sin^2` of the corner below which a triangle is a sliver: its barycentric coordinates may point at the wrong edge.
 const SLIVER: f64 = 1e-8;
@@ -37,8 +42,7 @@ pub struct Facet {
     gram: [f64; 3],
     /// One over the determinant of the Gram matrix; 0 for a sliver.
     scale: f64,
-    low: DVec3,
-    high: DVec3,
+    bounds: Box3,
 }
 
 impl Facet {
@@ -58,49 +62,15 @@ impl Facet {
             sides,
             gram,
             scale: if sturdy { 1.0 / determinant } else { 0.0 },
-            low: a.min(b).min(c),
-            high: a.max(b).max(c),
+            bounds: Box3::of_triangle([a, b, c]),
         }
-    }
-
-    /// A total order of different triangles that depends on coordinates alone.
-    pub(super) fn order(&self, other: &Self) -> std::cmp::Ordering {
-        let numbers = |f: &Self| {
-            [f.corner, f.low, f.high, f.sides[0], f.sides[1]]
-                .map(|p| p.to_array())
-                .concat()
-        };
-        let pairs = numbers(self).into_iter().zip(numbers(other));
-        pairs.fold(std::cmp::Ordering::Equal, |order, (a, b)| {
-            order.then(a.total_cmp(&b))
-        })
-    }
-
-    /// Least coordinates.
-    #[inline]
-    #[must_use]
-    pub fn low(&self) -> DVec3 {
-        self.low
-    }
-
-    /// Largest coordinates.
-    #[inline]
-    #[must_use]
-    pub fn high(&self) -> DVec3 {
-        self.high
     }
 
     /// False where a point is farther than `reach` from the box along an axis.
     #[inline]
     #[must_use]
     pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
-        let (below, above) = (self.low - p, p - self.high);
-        below.x <= reach
-            && below.y <= reach
-            && below.z <= reach
-            && above.x <= reach
-            && above.y <= reach
-            && above.z <= reach
+        self.bounds.may_reach(p, reach)
     }
 
     /// Squared distance from `p` to a point of the triangle: the nearest one but for rounding.
@@ -190,6 +160,35 @@ impl Facet {
         let [ab, ac] = self.sides;
         let (bp, bc) = (ap - ab, ac - ab);
         to_segment(bp, bc, bp.dot(bc), bc.dot(bc))
+    }
+}
+
+impl TreeItem for Facet {
+    #[inline]
+    fn bounds(&self) -> Box3 {
+        self.bounds
+    }
+
+    #[inline]
+    fn squared_distance(&self, p: DVec3) -> f64 {
+        self.distance2(p)
+    }
+
+    /// A total order of different triangles that depends on coordinates alone.
+    fn order(&self, other: &Self) -> Ordering {
+        let numbers = |f: &Self| {
+            [
+                f.corner,
+                f.bounds.low,
+                f.bounds.high,
+                f.sides[0],
+                f.sides[1],
+            ]
+            .map(|p| p.to_array())
+            .concat()
+        };
+        let pairs = numbers(self).into_iter().zip(numbers(other));
+        pairs.fold(Ordering::Equal, |order, (a, b)| order.then(a.total_cmp(&b)))
     }
 }
 

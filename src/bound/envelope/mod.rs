@@ -11,10 +11,8 @@ mod coverage;
 mod facet;
 mod reach;
 mod surface;
-mod tree;
 
 pub use coverage::{Change, Coverage, Trial};
 pub use facet::Facet;
 pub use reach::Reach;
 pub use surface::{Pieces, Surface};
-pub use tree::Tree;

@@ -9,7 +9,8 @@
 
 use glam::DVec3;
 
-use super::{Facet, Reach, Tree, reach::halve};
+use super::{Facet, Reach, reach::halve};
+use crate::geometry::TriangleTree;
 
 /// Pieces that one test looks at, at most.
 const PIECES: usize = 1 << 16;
@@ -28,7 +29,7 @@ pub struct Pieces(Vec<Piece>);
 /// The original surface.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
-    tree: Tree,
+    tree: Option<TriangleTree<Facet>>,
 }
 
 impl Surface {
@@ -36,14 +37,15 @@ impl Surface {
     #[must_use]
     pub fn new(triangles: impl Iterator<Item = [DVec3; 3]>) -> Self {
         Self {
-            tree: Tree::new(triangles.map(Facet::new).collect()),
+            tree: TriangleTree::of(triangles.map(Facet::new).collect()),
         }
     }
 
     /// True where `p` is within reach.
     #[must_use]
     pub fn reaches(&self, p: DVec3, reach: Reach) -> bool {
-        self.tree.nearest(p, None, reach.squared).is_some()
+        let tree = self.tree.as_ref();
+        tree.is_some_and(|tree| tree.nearest_within(p, None, reach.squared).is_some())
     }
 
     /// True where every point of the triangles is proved to be within reach.
@@ -60,15 +62,18 @@ impl Surface {
             corners,
             near: None,
         }));
+        let Some(tree) = &self.tree else {
+            return queue.is_empty();
+        };
         let mut next = 0;
         while let Some(&piece) = queue.get(next) {
             next += 1;
             let [a, b, c] = piece.corners;
             let centroid = ((a + b) + c) / 3.0;
-            let Some(near) = self.tree.nearest(centroid, piece.near, reach.squared) else {
+            let Some(near) = tree.nearest_within(centroid, piece.near, reach.squared) else {
                 return false;
             };
-            let facet = self.tree.facet(near);
+            let facet = tree.item(near);
             if [a, b, c]
                 .iter()
                 .all(|&p| facet.distance2(p) < reach.squared)

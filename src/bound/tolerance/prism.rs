@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::HalfSpace;
-use crate::num::math;
+use crate::{geometry::area_normal, num::math};
 
 /// `sin` of the least corner below which a triangle has no normal to speak of.
 const NEEDLE: f64 = 1e-6;
@@ -27,7 +27,7 @@ impl Prism {
     #[must_use]
     pub fn new(points: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = points;
-        let cross = (b - a).cross(c - a);
+        let cross = area_normal(points);
         let longest2 = [b - a, c - b, a - c]
             .map(|s| s.dot(s))
             .into_iter()

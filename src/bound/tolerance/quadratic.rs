@@ -2,40 +2,31 @@
 
 use glam::DVec3;
 
+use crate::{geometry::Sym3, num::math};
+
 /// `v . H v / 2 + c . v` with a symmetric, positive semidefinite `H`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quadratic {
-    /// `H` as `[xx, xy, xz, yy, yz, zz]`.
-    pub matrix: [f64; 6],
+    /// `H`.
+    pub matrix: Sym3,
     /// `c`.
     pub linear: DVec3,
 }
 
 impl Quadratic {
-    /// `H v`.
-    #[must_use]
-    pub fn times(&self, v: DVec3) -> DVec3 {
-        let [xx, xy, xz, yy, yz, zz] = self.matrix;
-        DVec3::new(
-            xx * v.x + xy * v.y + xz * v.z,
-            xy * v.x + yy * v.y + yz * v.z,
-            xz * v.x + yz * v.y + zz * v.z,
-        )
-    }
-
     /// Its value.
     #[must_use]
     pub fn at(&self, v: DVec3) -> f64 {
-        0.5 * v.dot(self.times(v)) + self.linear.dot(v)
+        0.5 * v.dot(self.matrix.times(v)) + self.linear.dot(v)
     }
 
     /// Where it is least; `None` where `H` is singular but for rounding.
     #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
-        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.times(axis));
+        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.matrix.times(axis));
         let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
         let determinant = a.dot(bc);
-        let trace = self.matrix[0] + self.matrix[3] + self.matrix[5];
+        let trace = self.matrix.trace();
         if determinant <= 1e-12 * (trace * trace * trace) {
             return None;
         }
@@ -54,11 +45,11 @@ impl Quadratic {
         } else {
             DVec3::Z
         };
-        let x = crate::num::math::unit(normal.cross(axis))?;
+        let x = math::unit(normal.cross(axis))?;
         let y = normal.cross(x);
-        let (hx, hy) = (self.times(x), self.times(y));
+        let (hx, hy) = (self.matrix.times(x), self.matrix.times(y));
         let (xx, xy, yy) = (x.dot(hx), x.dot(hy), y.dot(hy));
-        let slope = self.times(point) + self.linear;
+        let slope = self.matrix.times(point) + self.linear;
         let (sx, sy) = (slope.dot(x), slope.dot(y));
         let determinant = xx * yy - xy * xy;
         if determinant <= 1e-12 * ((xx + yy) * (xx + yy)) {
@@ -74,8 +65,8 @@ impl Quadratic {
     #[must_use]
     pub fn minimum_between(&self, from: DVec3, to: DVec3) -> DVec3 {
         let d = to - from;
-        let curve = d.dot(self.times(d));
-        let slope = (self.times(from) + self.linear).dot(d);
+        let curve = d.dot(self.matrix.times(d));
+        let slope = (self.matrix.times(from) + self.linear).dot(d);
         // A flat function is least at an end.
         if slope >= 0.0 {
             from

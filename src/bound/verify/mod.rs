@@ -1,7 +1,8 @@
 //! The verifier: holds results to what is claimed about them, by its own samples and its own proofs.
 //!
-//! It shares no code with what makes the claims (nor with `metric`): own search for nearest points, own angles, own
-//! reading of files; only `mesh`, `num` and the shape of a view cell are common. [`distance`] checks that two surfaces are
+//! It shares no code with what makes the claims, on purpose, and none with `metric` or `geometry`: own tree over
+//! triangles and nearest points (`nearest`), own angles, own reading of files; a mistake in those rooms cannot hide
+//! itself here. Only `mesh`, `num` and the shape of a view cell are common. [`distance`] checks that two surfaces are
 //! nowhere farther apart than claimed, [`angles`] that no viewer in a cell sees a point and what stands for it, by a
 //! [`Record`], under more than an angle.
 

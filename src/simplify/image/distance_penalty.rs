@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::{
     collapse::{LiveMesh, Patch, Star},
-    metric::Proximity,
+    geometry::{TriangleTree, double_area},
     num::math::{length, sqrt},
     parallel,
 };
@@ -23,7 +23,7 @@ const TIP: f64 = 0.3;
 /// The original surface, and how far the whole mesh was from it.
 #[derive(Debug)]
 pub struct Deviation<'a> {
-    original: &'a Proximity,
+    original: &'a TriangleTree,
     total: f64,
     weight: f64,
 }
@@ -31,7 +31,7 @@ pub struct Deviation<'a> {
 impl<'a> Deviation<'a> {
     /// `original` in the frame of `live`; `None` without weight. O(n log n).
     #[must_use]
-    pub fn new(original: &'a Proximity, live: &LiveMesh, weight: f64) -> Option<Self> {
+    pub fn new(original: &'a TriangleTree, live: &LiveMesh, weight: f64) -> Option<Self> {
         if weight <= 0.0 {
             return None;
         }
@@ -123,7 +123,7 @@ impl<'a> Deviation<'a> {
 
     /// `near` is a guess of the nearest triangle, and becomes one for the next face.
     fn of(&self, [a, b, c]: [DVec3; 3], near: &mut u32) -> f64 {
-        let area = 0.5 * length((b - a).cross(c - a));
+        let area = 0.5 * double_area([a, b, c]);
         let points = [
             ((a + b) + c) / 3.0,
             (a + b) * 0.5,
@@ -199,10 +199,10 @@ mod tests {
         Mesh::from_triangles(positions, triangles).expect("valid")
     }
 
-    fn square() -> Proximity {
+    fn square() -> TriangleTree {
         let flat = LiveMesh::new(&tent(0.0), Frame::default());
         let square: Vec<_> = (0..4).filter_map(|t| flat.points(t)).collect();
-        Proximity::new(square).expect("triangles")
+        TriangleTree::new(square).expect("triangles")
     }
 
     #[test]

@@ -17,6 +17,7 @@ use crate::{
     collapse::{
         Admitted, BoundaryEdge, Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site,
     },
+    geometry::Sym3,
     num::math,
 };
 
@@ -54,36 +55,17 @@ impl Default for MemorylessOptions {
 const COS2: f64 = 0.999_695_413_509_547_9;
 const SIN2: f64 = 3.045_864_904_520_854_5e-4;
 
-/// A symmetric 3x3 matrix `[xx, xy, xz, yy, yz, zz]` and a vector: the gradient `H v + c` of a quadratic function.
+/// A symmetric 3x3 matrix and a vector: the gradient `H v + c` of a quadratic function.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gradient {
-    pub(super) h: [f64; 6],
+    pub(super) h: Sym3,
     pub(super) c: DVec3,
 }
 
 impl Gradient {
-    fn times(&self, v: DVec3) -> DVec3 {
-        let [xx, xy, xz, yy, yz, zz] = self.h;
-        DVec3::new(
-            xx * v.x + xy * v.y + xz * v.z,
-            xy * v.x + yy * v.y + yz * v.z,
-            xz * v.x + yz * v.y + zz * v.z,
-        )
-    }
-
     /// Adds `weight * n n^T` and `weight * c`.
     fn add_outer(&mut self, weight: f64, n: DVec3, c: DVec3) {
-        let products = [
-            n.x * n.x,
-            n.x * n.y,
-            n.x * n.z,
-            n.y * n.y,
-            n.y * n.z,
-            n.z * n.z,
-        ];
-        for (h, p) in self.h.iter_mut().zip(products) {
-            *h += weight * p;
-        }
+        self.h.add_weighted(weight, &Sym3::outer(n));
         self.c += c * weight;
     }
 
@@ -98,9 +80,7 @@ impl Gradient {
             -e.y * e.z,
             ee - e.z * e.z,
         ];
-        for (h, p) in self.h.iter_mut().zip(products) {
-            *h += weight * p;
-        }
+        self.h.add_weighted(weight, &Sym3(products));
         self.c += c * weight;
     }
 }
@@ -172,7 +152,7 @@ impl<const UNIT: bool> Constraints<UNIT> {
 
     /// Offers that the derivative along `direction` vanishes.
     fn descend(&mut self, gradient: &Gradient, direction: DVec3) {
-        self.offer(gradient.times(direction), -direction.dot(gradient.c));
+        self.offer(gradient.h.times(direction), -direction.dot(gradient.c));
     }
 
     fn solve(&self) -> Option<DVec3> {
@@ -241,7 +221,7 @@ impl Objective {
             sums.volume.add_outer(1.0, n, n * -l);
         }
         let count = ring.spokes.len() as f64;
-        sums.shape.h = [count, 0.0, 0.0, count, 0.0, count];
+        sums.shape.h = Sym3([count, 0.0, 0.0, count, 0.0, count]);
         for spoke in &ring.spokes {
             sums.shape.c -= spoke.point - origin;
         }
@@ -311,7 +291,7 @@ impl Objective {
     }
 
     /// [`Objective::optimum`] as its matrix and vector, relative to the midpoint of the edge.
-    pub(in super::super) fn quadratic(&self) -> ([f64; 6], DVec3) {
+    pub(in super::super) fn quadratic(&self) -> (Sym3, DVec3) {
         let gradient = self.optimum();
         (gradient.h, gradient.c)
     }
@@ -320,14 +300,12 @@ impl Objective {
     fn optimum(&self) -> Gradient {
         let [volume, area] = self.weights;
         let mut both = Gradient::default();
-        for (h, v) in both.h.iter_mut().zip(self.volume.h) {
+        for (h, v) in both.h.0.iter_mut().zip(self.volume.h.0) {
             *h = volume * v;
         }
         both.c = self.volume.c * volume;
         if let Some(boundary) = &self.boundary {
-            for (h, b) in both.h.iter_mut().zip(boundary.area.h) {
-                *h += 9.0 * area * b;
-            }
+            both.h.add_weighted(9.0 * area, &boundary.area.h);
             both.c += boundary.area.c * (9.0 * area);
         }
         both

@@ -9,7 +9,10 @@
 use glam::DVec3;
 
 use super::method::{Gradient, MemorylessOptions, Objective};
-use crate::collapse::{LiveMesh, Patch, legality::RING_LIMIT};
+use crate::{
+    collapse::{LiveMesh, Patch, legality::RING_LIMIT},
+    geometry::{self, Sym3},
+};
 
 /// Most faces of a patch that are looked through for their vertices; beyond that those are sorted.
 const FEW: usize = 48;
@@ -17,8 +20,8 @@ const FEW: usize = 48;
 /// The sums at one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Fan {
-    /// Sum of `n n^T`, as `[xx, xy, xz, yy, yz, zz]`.
-    matrix: [f64; 6],
+    /// Sum of `n n^T`.
+    matrix: Sym3,
     /// Sum of `n`.
     normal: DVec3,
 }
@@ -26,21 +29,8 @@ pub(super) struct Fan {
 impl Fan {
     fn add(&mut self, n: DVec3) {
         self.normal += n;
-        for (m, p) in self.matrix.iter_mut().zip(outer(n)) {
-            *m += p;
-        }
+        self.matrix.add(&Sym3::outer(n));
     }
-}
-
-fn outer(n: DVec3) -> [f64; 6] {
-    [
-        n.x * n.x,
-        n.x * n.y,
-        n.x * n.z,
-        n.y * n.y,
-        n.y * n.z,
-        n.z * n.z,
-    ]
 }
 
 /// The sums at every vertex of a mesh. Empty: nothing can be estimated.
@@ -50,7 +40,7 @@ pub(super) struct Fans {
     ids: Vec<u32>,
     touched: Vec<u32>,
     /// By how much the matrix of every touched vertex grew.
-    growth: Vec<[f64; 6]>,
+    growth: Vec<Sym3>,
 }
 
 impl Fans {
@@ -98,9 +88,9 @@ impl Fans {
                 self.collect(live, v);
                 let after = self.fans[v as usize].matrix;
                 self.growth
-                    .push(std::array::from_fn(|i| after[i] - before[i]));
+                    .push(Sym3(std::array::from_fn(|i| after.0[i] - before.0[i])));
             } else {
-                self.growth.push([0.0; 6]);
+                self.growth.push(Sym3::default());
             }
         }
         self.touched = touched;
@@ -115,7 +105,7 @@ impl Fans {
         let mut growth = 0.0;
         for (&v, matrix) in self.touched.iter().zip(&self.growth) {
             if ends.contains(&v) {
-                growth += along.dot(product(matrix, along));
+                growth += along.dot(matrix.times(along));
             }
         }
         growth < 0.0
@@ -162,34 +152,24 @@ impl Fans {
         let half = (q - p) * 0.5;
         let mut volume = Gradient::default();
         for i in 0..6 {
-            volume.h[i] = at_u.matrix[i] + at_w.matrix[i] - shared.matrix[i];
+            volume.h.0[i] = at_u.matrix.0[i] + at_w.matrix.0[i] - shared.matrix.0[i];
         }
-        volume.c = product(&at_u.matrix, half) - product(&at_w.matrix, half);
+        volume.c = at_u.matrix.times(half) - at_w.matrix.times(half);
         let normal_sum = at_u.normal + at_w.normal - shared.normal;
         let volume_sum = (at_w.normal - at_u.normal).dot(half);
         let objective =
             Objective::without_boundary(normal_sum, volume_sum, volume, options.volume_weight);
         let v = objective.place_quickly().position.unwrap_or(DVec3::ZERO);
         let (from_u, from_w) = (v + half, v - half);
-        let swept = from_u.dot(product(&at_u.matrix, from_u))
-            + from_w.dot(product(&at_w.matrix, from_w))
-            - v.dot(product(&shared.matrix, v));
+        let swept = from_u.dot(at_u.matrix.times(from_u)) + from_w.dot(at_w.matrix.times(from_w))
+            - v.dot(shared.matrix.times(v));
         let cost = options.volume_weight * (swept.max(0.0) / 36.0);
         cost.is_finite().then_some(cost)
     }
 }
 
 fn area_normal(live: &LiveMesh, corners: [u32; 3]) -> DVec3 {
-    let [a, b, c] = corners.map(|v| live.position(v));
-    (b - a).cross(c - a)
-}
-
-fn product([xx, xy, xz, yy, yz, zz]: &[f64; 6], v: DVec3) -> DVec3 {
-    DVec3::new(
-        xx * v.x + xy * v.y + xz * v.z,
-        xy * v.x + yy * v.y + yz * v.z,
-        xz * v.x + yz * v.y + zz * v.z,
-    )
+    geometry::area_normal(corners.map(|v| live.position(v)))
 }
 
 #[cfg(test)]

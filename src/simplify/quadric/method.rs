@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    geometry::Sym3,
     num::math,
 };
 
@@ -70,10 +71,10 @@ impl Default for QuadricOptions {
     }
 }
 
-/// A quadratic function of a position: `v^T A v + 2 b . v + c`, with `A` as `[xx, xy, xz, yy, yz, zz]`.
+/// A quadratic function of a position: `v^T A v + 2 b . v + c`, with a symmetric `A`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quadric {
-    a: [f64; 6],
+    a: Sym3,
     b: DVec3,
     c: f64,
 }
@@ -101,14 +102,14 @@ impl Quadric {
         let d = n.dot(point);
         let c = d * d + n2 * point.dot(point) + p2 * n.dot(n) + 3.0 * p2 * n2;
         Self {
-            a: [
+            a: Sym3([
                 n.x * n.x + n2,
                 n.x * n.y,
                 n.x * n.z,
                 n.y * n.y + n2,
                 n.y * n.z,
                 n.z * n.z + n2,
-            ],
+            ]),
             b: -(n * d + point * n2),
             c,
         }
@@ -118,7 +119,7 @@ impl Quadric {
     /// This function times a number.
     #[must_use]
     pub fn scaled(mut self, weight: f64) -> Self {
-        for a in &mut self.a {
+        for a in &mut self.a.0 {
             *a *= weight;
         }
         self.b *= weight;
@@ -129,33 +130,22 @@ impl Quadric {
     /// The sum of two.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
-        for (a, o) in self.a.iter_mut().zip(other.a) {
-            *a += o;
-        }
+        self.a.add(&other.a);
         self.b += other.b;
         self.c += other.c;
         self
     }
 
-    fn times(&self, v: DVec3) -> DVec3 {
-        let [xx, xy, xz, yy, yz, zz] = self.a;
-        DVec3::new(
-            xx * v.x + xy * v.y + xz * v.z,
-            xy * v.x + yy * v.y + yz * v.z,
-            xz * v.x + yz * v.y + zz * v.z,
-        )
-    }
-
     /// Its value at `v`; rounding below 0 is 0.
     #[must_use]
     pub fn error(&self, v: DVec3) -> f64 {
-        (v.dot(self.times(v)) + 2.0 * self.b.dot(v) + self.c).max(0.0)
+        (v.dot(self.a.times(v)) + 2.0 * self.b.dot(v) + self.c).max(0.0)
     }
 
     /// Where it is smallest; `None` where that is ill-conditioned (planes nearly parallel to one line).
     #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
-        let [xx, xy, xz, yy, yz, zz] = self.a;
+        let [xx, xy, xz, yy, yz, zz] = self.a.0;
         let (c0, c1, c2) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
         let (c4, c5, c8) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);
         let determinant = xx * c0 + xy * c1 + xz * c2;
@@ -176,9 +166,9 @@ impl Quadric {
     #[must_use]
     pub fn minimum_on(&self, [u, w]: [DVec3; 2]) -> Option<DVec3> {
         let d = w - u;
-        let curvature = d.dot(self.times(d));
-        let least = f64::EPSILON * (self.a[0] + self.a[3] + self.a[5]) * d.dot(d);
-        let t = -(d.dot(self.times(u)) + self.b.dot(d)) / curvature;
+        let curvature = d.dot(self.a.times(d));
+        let least = f64::EPSILON * self.a.trace() * d.dot(d);
+        let t = -(d.dot(self.a.times(u)) + self.b.dot(d)) / curvature;
         (curvature > least && t.is_finite()).then(|| u + d * t.clamp(0.0, 1.0))
     }
 

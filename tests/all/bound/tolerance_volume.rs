@@ -400,11 +400,11 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
                 n.y * n.z,
                 n.z * n.z,
             ];
-            of.matrix.iter_mut().zip(m).for_each(|(x, y)| *x += y);
+            of.matrix.0.iter_mut().zip(m).for_each(|(x, y)| *x += y);
             of.linear -= n * d;
         }
         let value = |v: DVec3| {
-            let [a, b, c, d, e, f] = of.matrix;
+            let [a, b, c, d, e, f] = of.matrix.0;
             let h = DVec3::new(
                 a * v.x + b * v.y + c * v.z,
                 b * v.x + d * v.y + e * v.z,

@@ -8,11 +8,9 @@
 use glam::DVec3;
 use lodmark::{
     Error, Result, Silent,
+    geometry::closest_point,
     mesh::{Mesh, MeshParts},
-    metric::{
-        closest_point,
-        surface::{SurfaceDistance, surface_distance},
-    },
+    metric::surface::{SurfaceDistance, surface_distance},
     num::Precision,
 };
 use proptest::prelude::*;

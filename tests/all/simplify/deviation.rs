@@ -6,8 +6,8 @@ use glam::DVec3;
 use lodmark::{
     Error, Silent,
     collapse::{LiveMesh, Observer, Patch},
+    geometry::{TriangleTree, closest_point},
     mesh::{Mesh, generate},
-    metric::{Proximity, closest_point},
     num::math,
     raster::LayerEngine,
     simplify::{
@@ -92,7 +92,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
         let frame = frame_of(&mesh);
         let original = mesh.enter_frame(frame);
         let all = faces(&original);
-        let surface = Proximity::new(all.clone()).expect("triangles");
+        let surface = TriangleTree::new(all.clone()).expect("triangles");
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         let set = &view_sets(&sphere)[0].1;
         let worse = pushed(&mesh, 0.06, 11);

@@ -7,8 +7,8 @@ use lodmark::{
         Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star, flip,
         unfolded,
     },
+    geometry::closest_point,
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
-    metric::closest_point,
     num::math,
     raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{

@@ -10,22 +10,41 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-/// Squared length, in the order in which box distances are summed as well: see `proximity`.
+use super::Box3;
+use crate::num::math::length;
+
+/// The normal of a triangle, twice as long as its area is large.
 #[inline]
-pub(super) fn squared(v: DVec3) -> f64 {
+#[must_use]
+pub fn area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// Twice the area of a triangle.
+#[inline]
+#[must_use]
+pub fn double_area(corners: [DVec3; 3]) -> f64 {
+    length(area_normal(corners))
+}
+
+/// Squared length, in the order in which [`Box3::squared_distance`] sums as well: the tree needs that.
+#[inline]
+fn squared(v: DVec3) -> f64 {
     (v.x * v.x + v.y * v.y) + v.z * v.z
 }
 
 /// A triangle with its corners in ascending order of (x, y, z).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Triangle {
+pub struct Triangle {
     corners: [DVec3; 3],
-    /// Whether ordering the corners turned the other side up.
+    /// True where ordering the corners turned the other side up.
     turned: bool,
 }
 
 impl Triangle {
-    pub(super) fn new(mut corners: [DVec3; 3]) -> Self {
+    /// Orders the corners.
+    #[must_use]
+    pub fn new(mut corners: [DVec3; 3]) -> Self {
         let mut turned = false;
         // Three exchanges sort three corners, and each turns the triangle over.
         for i in [0, 1, 0] {
@@ -37,34 +56,37 @@ impl Triangle {
         Self { corners, turned }
     }
 
-    /// Twice its area along its normal, as the corners were given.
-    pub(super) fn normal(&self) -> DVec3 {
-        let [a, b, c] = self.corners;
-        let normal = (b - a).cross(c - a);
+    /// The normal, twice as long as the area is large, of the side that the corners as given go around
+    /// counter-clockwise.
+    #[must_use]
+    pub fn area_normal(&self) -> DVec3 {
+        let normal = area_normal(self.corners);
         if self.turned { -normal } else { normal }
     }
 
-    pub(super) fn corners(&self) -> [DVec3; 3] {
+    /// The corners, in ascending order of their coordinates.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 3] {
         self.corners
     }
 
-    pub(super) fn low(&self) -> DVec3 {
-        self.corners[0].min(self.corners[1]).min(self.corners[2])
-    }
-
-    pub(super) fn high(&self) -> DVec3 {
-        self.corners[0].max(self.corners[1]).max(self.corners[2])
+    /// The smallest box around it.
+    #[inline]
+    #[must_use]
+    pub fn bounds(&self) -> Box3 {
+        Box3::of_triangle(self.corners)
     }
 
     /// Twice the area.
-    pub(super) fn double_area(&self) -> f64 {
-        let [a, b, c] = self.corners;
-        crate::num::math::length((b - a).cross(c - a))
+    #[must_use]
+    pub fn double_area(&self) -> f64 {
+        double_area(self.corners)
     }
 
     /// The closest point, inside the bounding box of the corners, and its squared distance.
     #[inline]
-    pub(super) fn closest(&self, p: DVec3) -> (DVec3, f64) {
+    #[must_use]
+    pub fn closest(&self, p: DVec3) -> (DVec3, f64) {
         let [a, b, c] = self.corners;
         let (ab, ac, ap) = (b - a, c - a, p - a);
         let normal = ab.cross(ac);
@@ -95,7 +117,8 @@ impl Triangle {
     /// of triangle distances exactly, not up to rounding.
     #[inline]
     fn admit(&self, p: DVec3, candidate: DVec3) -> (DVec3, f64) {
-        let q = candidate.max(self.low()).min(self.high());
+        let Box3 { low, high } = self.bounds();
+        let q = candidate.max(low).min(high);
         (q, squared(p - q))
     }
 }

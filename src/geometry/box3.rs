@@ -1,0 +1,112 @@
+//! A box with sides along the axes.
+
+use glam::DVec3;
+
+/// A box with sides along the axes, from its smallest to its largest corner. Nothing is rounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Box3 {
+    /// Smallest coordinates.
+    pub low: DVec3,
+    /// Largest coordinates.
+    pub high: DVec3,
+}
+
+impl Box3 {
+    /// The box of one point.
+    #[inline]
+    #[must_use]
+    pub fn at(p: DVec3) -> Self {
+        Self { low: p, high: p }
+    }
+
+    /// The box of points; `None` without any.
+    #[inline]
+    #[must_use]
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        Some(points.fold(Self::at(first), |all, p| all.union(Self::at(p))))
+    }
+
+    /// The box of the corners of a triangle.
+    #[inline]
+    #[must_use]
+    pub fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+        Self {
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+        }
+    }
+
+    /// The smallest box around two.
+    #[inline]
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+
+    /// The difference of the corners.
+    #[inline]
+    #[must_use]
+    pub fn diagonal(&self) -> DVec3 {
+        self.high - self.low
+    }
+
+    /// The axis along which the box is longest; the first of equals.
+    #[inline]
+    #[must_use]
+    pub fn longest_axis(&self) -> usize {
+        let d = self.diagonal();
+        if d.x >= d.y && d.x >= d.z {
+            0
+        } else if d.y >= d.z {
+            1
+        } else {
+            2
+        }
+    }
+
+    /// Squared distance from `p`; 0 inside.
+    #[inline]
+    #[must_use]
+    pub fn squared_distance(&self, p: DVec3) -> f64 {
+        let d = (self.low - p).max(p - self.high).max(DVec3::ZERO);
+        d.dot(d)
+    }
+
+    /// False where a point is farther than `reach` from the box along an axis.
+    #[inline]
+    #[must_use]
+    pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
+        let (below, above) = (self.low - p, p - self.high);
+        below.x <= reach
+            && below.y <= reach
+            && below.z <= reach
+            && above.x <= reach
+            && above.y <= reach
+            && above.z <= reach
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_holds_its_points_and_knows_its_longest_axis() {
+        assert_eq!(Box3::of([]), None);
+        let b = Box3::of([DVec3::new(1.0, 5.0, 0.0), DVec3::new(0.0, 0.0, 5.0)]);
+        let b = b.expect("two points");
+        assert_eq!(
+            (b.diagonal(), b.longest_axis()),
+            (DVec3::new(1.0, 5.0, 5.0), 1)
+        );
+        assert_eq!(b.squared_distance(DVec3::new(4.0, 9.0, 2.0)), 25.0);
+        assert_eq!(b.squared_distance(DVec3::splat(0.5)), 0.0);
+        assert!(b.may_reach(DVec3::new(4.0, 9.0, 2.0), 4.0));
+        assert!(!b.may_reach(DVec3::new(4.0, 9.0, 2.0), 3.0));
+    }
+}
