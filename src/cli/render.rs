@@ -155,7 +155,7 @@ pub(super) fn run(options: &RenderArgs, common: &Common, terminal: &Terminal) ->
             match buffer {
                 Buffer::Luma => {
                     let luma = raster::mean_luma(
-                        &raster::luma_sums(&scene, view, &framed),
+                        &raster::sum_samples(&picture.luma(), framed.samples),
                         framed.samples,
                     );
                     own.insert("luma".into(), hash::plane_sha256(&luma));

@@ -13,7 +13,7 @@ use super::luma::{SquaredError, ViewErrors, squared_error};
 use crate::{
     Error, Progress, Result, parallel,
     raster::{Grid, Scene, luma_sums, mean_luma},
-    view::{Interpolation, Projection, Sphere, View, ViewSet, directions::dodecahedron},
+    view::{Interpolation, Projection, Sphere, View, ViewSet, sets::dodecahedron},
 };
 
 /// Bytes of pictures in the making at a time; one view at least.

@@ -7,7 +7,7 @@ use crate::{
     encode::png::Picture,
     mesh::{Mesh, generate},
     raster::{self, Scene},
-    view::{Projection, ViewSet, directions::octahedron, frame_of},
+    view::{Projection, ViewSet, frame_of, sets::octahedron},
     visibility::{
         self, MeasureOptions, PartialVisibility, Visibility, color, measure, remove_hidden,
     },

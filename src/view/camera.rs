@@ -3,7 +3,13 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::num::fixed::SubpixelBits;
+use crate::{
+    Error, Result,
+    num::{Frame, fixed::SubpixelBits},
+};
+
+/// Largest number of samples in a row or column of an image: what the fixed-point rasterizer has bits for.
+pub const SIDE_LIMIT: u32 = 4_096;
 
 /// Rows of the clip-from-world matrix: `clip_i = ((m_i0 x + m_i1 y) + m_i2 z) + m_i3`, in that order.
 ///
@@ -122,4 +128,100 @@ pub struct ViewSet {
     pub background: u8,
     /// The views.
     pub views: Vec<View>,
+}
+
+impl ViewSet {
+    /// With `samples` x `samples` samples per pixel.
+    ///
+    /// # Errors
+    /// As [`ViewSet::check_size`].
+    pub fn with_samples(mut self, samples: u32) -> Result<Self> {
+        self.samples = samples;
+        self.check_size()?;
+        Ok(self)
+    }
+
+    /// With another sub-pixel grid.
+    #[must_use]
+    pub fn with_subpixel(mut self, subpixel: SubpixelBits) -> Self {
+        self.subpixel = subpixel;
+        self
+    }
+
+    /// With `shading` in every view.
+    #[must_use]
+    pub fn with_shading(mut self, shading: Shading) -> Self {
+        for view in &mut self.views {
+            view.shading = shading;
+        }
+        self
+    }
+
+    /// With `cull` in every view.
+    #[must_use]
+    pub fn with_cull(mut self, cull: Cull) -> Self {
+        for view in &mut self.views {
+            view.cull = cull;
+        }
+        self
+    }
+
+    /// With fronts culled in `count` of the views, spread evenly over their order, so that these show interiors
+    /// (Lindstrom & Turk 2000, section 5.2).
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where there are fewer views.
+    pub fn with_interior_views(mut self, count: usize) -> Result<Self> {
+        let total = self.views.len();
+        if count > total {
+            return Err(Error::Usage(format!(
+                "{count} interior views of {total}; expected at most {total}"
+            )));
+        }
+        for (i, view) in self.views.iter_mut().enumerate() {
+            if (i + 1) * count / total > i * count / total {
+                view.cull = Cull::Front;
+            }
+        }
+        Ok(self)
+    }
+
+    /// Refuses sizes that the rasterizer has no bits for.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] unless `samples` is 1, 2 or 4 and each side has 1 to [`SIDE_LIMIT`] samples.
+    pub fn check_size(&self) -> Result<()> {
+        let (width, height, samples) = (self.width, self.height, self.samples);
+        if ![1, 2, 4].contains(&samples) {
+            return Err(Error::Usage(format!(
+                "{samples} samples per pixel along each axis; expected 1, 2 or 4"
+            )));
+        }
+        let limit = SIDE_LIMIT / samples;
+        if width == 0 || height == 0 || width > limit || height > limit {
+            return Err(Error::Usage(format!(
+                "images of {width} x {height} pixels; expected sides of 1 to {limit} pixels with {samples} x \
+                 {samples} samples each"
+            )));
+        }
+        Ok(())
+    }
+
+    /// The same views of the same scene in units of `frame`; the images are the same, bit for bit.
+    #[must_use]
+    pub fn enter_frame(&self, frame: Frame) -> Self {
+        Self {
+            views: self.views.iter().map(|v| v.enter_frame(frame)).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Undoes [`ViewSet::enter_frame`].
+    #[must_use]
+    pub fn leave_frame(&self, frame: Frame) -> Self {
+        Self {
+            views: self.views.iter().map(|v| v.leave_frame(frame)).collect(),
+            ..self.clone()
+        }
+    }
 }

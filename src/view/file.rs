@@ -1,16 +1,29 @@
-//! The JSON view file: the views of a reference image set, the same schema as `scene.json` of the exchange format.
+//! The JSON view file: the views of a reference image set, the same schema as the `scene.json` that `lodmark render`
+//! writes.
+//!
+//! A whole one: an orthographic view of the unit sphere from +z ([`EXAMPLE`]).
 //!
 //! ```json
-//! {"schema": 1, "width": 256, "height": 256, "samples": 1, "subpixel_bits": 8, "y_direction": "down",
-//!  "depth": "0 near, 1 far", "background": 128,
-//!  "views": [{"matrix": ["3ff0000000000000", ...], "matrix_f32": [1.0, ...], "eye": {"point": [0, 0, 2]},
-//!             "near": 1, "far": 3, "cull": "none", "shading": {"interpolation": "flat", "two_sided": true},
-//!             "light": "headlight", "sha256": {"luma": "..."}}]}
+#![doc = include_str!("example.json")]
 //! ```
-//! `matrix` is clip from world, row by row, as the bits of 16 doubles in hexadecimal; `matrix_f32` its rounding, which
-//! a GPU uploads (null beyond the range; it may be left out). Everything else that is not a whole number is written
-//! with the digits that give the same double back. Lengths are in the units of the mesh file. Rows of images go down;
-//! depth is z / w. `sha256` (optional) names the images that belong to a view.
+//! | field | value |
+//! |---|---|
+//! | `width`, `height` | pixels of an image: 1 to 4096 / `samples` |
+//! | `samples` | samples per pixel along each axis: 1, 2 or 4 |
+//! | `subpixel_bits` | 8 or 16 |
+//! | `y_direction`, `depth` | rows of images go down, depth is z / w; nothing else is read |
+//! | `background` | luma where nothing is, 0 to 255 |
+//! | `matrix` | clip space from world space, row by row, as the bits of 16 doubles in hexadecimal |
+//! | `matrix_f32` | its rounding, which a GPU uploads (null beyond the range); may be left out |
+//! | `eye` | `{"point": [x, y, z]}` where the viewer stands, or `{"axis": [x, y, z]}` towards an orthographic one |
+//! | `near`, `far` | distances of the planes that bound what is drawn |
+//! | `cull` | `"none"`, `"back"` or `"front"`: the side that is not drawn |
+//! | `shading` | `interpolation` `"flat"` or `"gouraud"`; `two_sided`; may have `"specular": {"strength": 0.3, "exponent": 20}` |
+//! | `light` | `"headlight"`, `{"point": [x, y, z]}`, or `{"direction": [x, y, z]}` towards a light far away |
+//! | `sha256` | hashes of the images that belong to a view, by buffer; may be left out |
+//!
+//! Lengths are in the units of the mesh file; axes and directions have length 1. Numbers that are neither whole nor in
+//! a matrix are written with the digits that give the same double back.
 
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
 
@@ -23,10 +36,13 @@ use crate::{Error, Result, num::fixed::SubpixelBits, num::math};
 /// The version of the schema that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
 
+/// A whole view file with one view: for help texts, and shown where a file is refused.
+pub const EXAMPLE: &str = include_str!("example.json");
+
 /// Largest view file that is read, in bytes: 4,098 views take some 6 MB.
 const SIZE_LIMIT: u64 = 256 << 20;
 
-/// How far from 1 the length of a unit vector in a file may be.
+/// Largest deviation from 1 of the length of a unit vector in a file.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
 const Y_DIRECTION: &str = "down";
@@ -133,20 +149,25 @@ pub fn to_json(set: &ViewSet, hashes: &[ImageHashes]) -> Result<String> {
 pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
     let path = path.as_ref();
     let refused = |what: String| Error::input(path, what);
+    let malformed = |e: serde_json::Error| {
+        refused(format!(
+            "{e}; expected a view file such as `lodmark render` writes as scene.json; see `lodmark render --help`; \
+             a whole one is\n{EXAMPLE}"
+        ))
+    };
     // The version first: a later schema fails with its number, not with a field this version does not know.
     #[derive(Deserialize)]
     struct Version {
         schema: u32,
     }
-    let version: Version = serde_json::from_str(text)
-        .map_err(|e| refused(format!("{e}; expected a view file (JSON)")))?;
+    let version: Version = serde_json::from_str(text).map_err(malformed)?;
     if version.schema != SCHEMA {
         return Err(refused(format!(
             "schema {}; this version reads schema {SCHEMA}",
             version.schema
         )));
     }
-    let record: SetRecord = serde_json::from_str(text).map_err(|e| refused(e.to_string()))?;
+    let record: SetRecord = serde_json::from_str(text).map_err(malformed)?;
     for (field, found, expected) in [
         ("y_direction", &record.y_direction, Y_DIRECTION),
         ("depth", &record.depth, DEPTH),

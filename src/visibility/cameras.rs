@@ -12,7 +12,7 @@ use crate::{
     num::math,
     view::{
         Projection, Sphere, ViewSet,
-        directions::{octahedron, octahedron_faces},
+        sets::{octahedron, octahedron_faces},
     },
 };
 

@@ -5,7 +5,7 @@ use crate::{
     Progress, Result,
     geometry::double_area,
     mesh::Mesh,
-    view::{directions::OCTAHEDRON_LIMIT, frame_of},
+    view::{frame_of, sets::OCTAHEDRON_LIMIT},
 };
 
 /// A measurement with some of the cameras, against the one with all 4,098.

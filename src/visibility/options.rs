@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Error, Result,
     num::fixed::SubpixelBits,
-    view::{SIDE_LIMIT, directions::OCTAHEDRON_LIMIT},
+    view::{SIDE_LIMIT, sets::OCTAHEDRON_LIMIT},
 };
 
 /// How the octahedron of cameras stands.

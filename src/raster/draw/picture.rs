@@ -7,6 +7,7 @@ use super::{
     zbuffer::{EMPTY, ZBuffer},
 };
 use crate::{
+    num::fixed,
     parallel,
     view::{Interpolation, View, ViewSet},
 };
@@ -20,6 +21,14 @@ pub struct Picture<T> {
     pub tones: Grid<T>,
     /// Triangles that could not be drawn because a coordinate is not finite after the transform.
     pub dropped: u64,
+}
+
+impl Picture<[u8; 3]> {
+    /// Luma at every sample: the same bits as [`luma`] draws.
+    #[must_use]
+    pub fn luma(&self) -> Grid<u8> {
+        self.tones.map(fixed::luma)
+    }
 }
 
 fn draw<T: Copy>(

@@ -11,7 +11,7 @@ use crate::{
     num::Frame,
     view::{
         self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName,
-        directions::turned,
+        sets::turned,
     },
 };
 

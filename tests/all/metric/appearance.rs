@@ -14,7 +14,7 @@ use lodmark::{
     },
     num::Frame,
     raster::{self, Scene},
-    view::{Cull, Interpolation, Shading, Sphere, ViewSet, directions, frame_of},
+    view::{Cull, Interpolation, Shading, Sphere, ViewSet, frame_of, sets},
 };
 use proptest::prelude::*;
 
@@ -23,7 +23,7 @@ use crate::support::{Impatient, Random, same_on_all_threads};
 /// Small views around a mesh, in its units.
 fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
-    let directions = &directions::rhombicuboctahedron()[..6];
+    let directions = &sets::rhombicuboctahedron()[..6];
     ViewSet::around(&sphere, directions, size, size, Default::default())
         .expect("views")
         .with_samples(samples)

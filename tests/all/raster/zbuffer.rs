@@ -151,9 +151,10 @@ proptest! {
             prop_assert_eq!(picture.tones.values(), &luma);
             let bare = raster::keys(&scene, view, &set);
             prop_assert_eq!(bare.keys.values(), &keys);
-            let grey = raster::rgb(&scene, view, &set).tones;
+            let colours = raster::rgb(&scene, view, &set);
+            prop_assert_eq!(Some(colours.luma()), Grid::new(set.width * set.samples, set.height * set.samples, luma.clone()));
             if !colored {
-                prop_assert_eq!(grey.values(), luma.iter().map(|&v| [v; 3]).collect::<Vec<_>>());
+                prop_assert_eq!(colours.tones.values(), luma.iter().map(|&v| [v; 3]).collect::<Vec<_>>());
             }
         }
     }

@@ -16,8 +16,8 @@ use lodmark::{
         memoryless::{self, MemorylessOptions},
     },
     view::{
-        Cull, Interpolation, Projection, Shading, Specular, Sphere, View, ViewSet,
-        directions::dodecahedron, frame_of,
+        Cull, Interpolation, Projection, Shading, Specular, Sphere, View, ViewSet, frame_of,
+        sets::dodecahedron,
     },
 };
 

@@ -12,7 +12,7 @@ use lodmark::{
         image::{ImageOptions, Preset, Size, Start},
         simplify,
     },
-    view::{Cull, Projection, Sphere, ViewSet, directions::rhombicuboctahedron, frame_of},
+    view::{Cull, Projection, Sphere, ViewSet, frame_of, sets::rhombicuboctahedron},
 };
 
 /// The scene, and what is left of it with 0, 10 and 20 of 20 views that look inside.

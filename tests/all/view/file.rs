@@ -59,6 +59,16 @@ fn two_views() -> ViewSet {
 }
 
 #[test]
+fn the_example_of_a_view_file_is_read_and_an_error_shows_it() {
+    let size = [256, 256];
+    let set = file::from_json(file::EXAMPLE, "-").expect("a whole file");
+    let view = View::orthographic(&unit_sphere(), DVec3::Z, DVec3::Y, size).expect("a view");
+    assert_eq!((set.views, [set.width, set.height]), (vec![view], size));
+    let refused = file::from_json("{}", "views.json").expect_err("no view file");
+    assert!(refused.to_string().contains(file::EXAMPLE), "{refused}");
+}
+
+#[test]
 fn a_view_file_is_read_from_where_it_was_written() {
     let folder = crate::support::folder();
     let path = folder.path().join("views.json");

@@ -1,7 +1,7 @@
 //! Views: the minimum bounding sphere, camera placement, view sets, the view file.
 
 mod file;
-mod place;
+mod framing;
 mod sets;
 mod sphere;
 
@@ -12,7 +12,7 @@ use lodmark::{
     num::{Frame, Precision, fixed::SubpixelBits, math::sqrt},
     view::{
         Cull, Eye, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet,
-        ViewsName, directions, frame_of, resolve,
+        ViewsName, frame_of, resolve, sets as named_sets,
     },
 };
 use proptest::prelude::*;

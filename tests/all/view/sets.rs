@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn the_directions_are_those_of_the_published_polyhedra() {
-    let dodecahedron = directions::dodecahedron();
+    let dodecahedron = named_sets::dodecahedron();
     assert_eq!(dodecahedron.len(), 20);
     for (i, v) in [
         (0, [-1.0, -1.0, -1.0]),
@@ -20,7 +20,7 @@ fn the_directions_are_those_of_the_published_polyhedra() {
             dodecahedron[i]
         );
     }
-    let evaluation = directions::rhombicuboctahedron();
+    let evaluation = named_sets::rhombicuboctahedron();
     assert_eq!(evaluation.len(), 24);
     for (i, v) in [
         (0, [-2.414_213_562_373_095, -1.0, -1.0]),
@@ -60,7 +60,7 @@ fn the_subdivided_octahedron_has_the_published_counts_and_sums() {
         (4, 1026, 251.376_471_066_484, 258.164_488_950_067_2),
         (5, 4098, f64::NAN, f64::NAN),
     ] {
-        let set = directions::octahedron(k);
+        let set = named_sets::octahedron(k);
         assert_eq!(set.len(), n);
         assert!(set.iter().all(|d| (d.length() - 1.0).abs() < 1e-15));
         let sum = |axis: DVec3| set.iter().map(|d| d.dot(axis).max(0.0)).sum::<f64>();
@@ -71,12 +71,12 @@ fn the_subdivided_octahedron_has_the_published_counts_and_sums() {
                 "{k}"
             );
             assert_eq!(
-                directions::octahedron(k + 1)[..n],
+                named_sets::octahedron(k + 1)[..n],
                 set,
                 "a refinement keeps its prefix"
             );
         }
-        let (_, faces) = directions::octahedron_faces(k);
+        let (_, faces) = named_sets::octahedron_faces(k);
         assert_eq!(faces.len(), 8 << (2 * k));
         let outward = |f: &[u32; 3]| {
             let [a, b, c] = f.map(|v| set[v as usize]);
@@ -89,7 +89,7 @@ fn the_subdivided_octahedron_has_the_published_counts_and_sums() {
 #[test]
 fn spirals_cover_the_sphere_evenly_with_any_number_of_views() {
     for n in [1, 2, 7, 24, 42, 100, 501] {
-        let set = directions::spiral(n);
+        let set = named_sets::spiral(n);
         assert_eq!(set.len(), n as usize);
         assert!(set.iter().all(|d| (d.length() - 1.0).abs() < 1e-15), "{n}");
         if n < 20 {
@@ -97,7 +97,7 @@ fn spirals_cover_the_sphere_evenly_with_any_number_of_views() {
         }
         // Every point of the sphere has a direction nearby: no farther than twice the radius of a fair share.
         let share = 2.0 / sqrt(f64::from(n));
-        for probe in directions::octahedron(3) {
+        for probe in named_sets::octahedron(3) {
             let nearest = set.iter().map(|d| (*d - probe).length());
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             assert!(nearest < 1.5 * share, "{n}: {probe} is {nearest} away");
@@ -113,9 +113,9 @@ fn spirals_cover_the_sphere_evenly_with_any_number_of_views() {
 
 #[test]
 fn turned_directions_keep_their_angles_and_never_come_back() {
-    let set = directions::spiral(12);
-    assert_eq!(directions::turned(&set, 0), set);
-    let rounds: Vec<_> = (0..40).map(|r| directions::turned(&set, r)).collect();
+    let set = named_sets::spiral(12);
+    assert_eq!(named_sets::turned(&set, 0), set);
+    let rounds: Vec<_> = (0..40).map(|r| named_sets::turned(&set, r)).collect();
     for (r, turned) in rounds.iter().enumerate() {
         for i in 0..set.len() {
             for j in 0..set.len() {

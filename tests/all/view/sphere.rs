@@ -177,7 +177,7 @@ fn points_on_a_line_a_circle_and_a_sphere_have_the_sphere_of_their_extremes() {
     let s = sphere(&cube);
     assert_eq!(s.center, DVec3::splat(0.5));
     assert!((s.radius - sqrt(0.75)).abs() < 1e-15);
-    let (round, _) = directions::octahedron_faces(4);
+    let (round, _) = named_sets::octahedron_faces(4);
     let s = sphere(&round);
     assert!(
         s.center.length() < 1e-15 && (s.radius - 1.0).abs() < 1e-15,

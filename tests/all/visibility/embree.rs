@@ -14,7 +14,7 @@ use lodmark::{
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
-    view::{Eye, Projection, Sphere, ViewSet, directions, file, frame_of},
+    view::{Eye, Projection, Sphere, ViewSet, file, frame_of, sets},
     visibility::{
         self, MeasureOptions,
         rays::{Class, RayCaster, Tally},
@@ -223,7 +223,7 @@ fn by_shadows(packages: &Path, mesh: &Mesh, directions: &[DVec3], step: usize) -
 /// V of every triangle by the rule of the paper on what Embree casts from the cameras of `options`.
 fn by_paper(packages: &Path, mesh: &Mesh, options: &MeasureOptions) -> Vec<f64> {
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
-    let towards = directions::octahedron(options.octahedron);
+    let towards = sets::octahedron(options.octahedron);
     let size = options.size;
     let set = ViewSet::around(&sphere, &towards, size, size, Projection::Orthographic);
     let dir = folder();
@@ -291,11 +291,11 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
         };
         // The truth: shadow rays in the directions of many cameras.
         let k = if full() { 3 } else { 2 };
-        let shadows = by_shadows(packages, &mesh, &directions::octahedron(k), step.max(1));
+        let shadows = by_shadows(packages, &mesh, &sets::octahedron(k), step.max(1));
         let truth = mean(&mesh, &shadows, &shadows);
         say(&format!(
             "{name}: V(M) by shadow rays, {} directions: {truth:.4}",
-            directions::octahedron(k).len()
+            sets::octahedron(k).len()
         ));
         let (coarse, fine) = match (full(), name) {
             (true, _) => (&[(1, 120), (2, 240)][..], (3, 480)),

@@ -6,7 +6,7 @@ use lodmark::{
     mesh::{self, Mesh, generate},
     num::{fixed::SubpixelBits, math},
     raster::{self, Scene},
-    view::{Projection, Sphere, ViewSet, directions::octahedron, frame_of},
+    view::{Projection, Sphere, ViewSet, frame_of, sets::octahedron},
     visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule, measure},
 };
 use proptest::prelude::*;

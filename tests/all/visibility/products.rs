@@ -6,7 +6,7 @@ use lodmark::{
     mesh::{ChannelKind, Mesh, MeshParts, generate},
     num::math,
     raster::{self, Scene},
-    view::{Projection, Sphere, ViewSet, directions::octahedron},
+    view::{Projection, Sphere, ViewSet, sets::octahedron},
     visibility::{MeasureOptions, PartialVisibility, convergence, measure, ply, remove_hidden},
 };
 use proptest::prelude::*;

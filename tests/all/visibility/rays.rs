@@ -6,7 +6,7 @@ use lodmark::{
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
     raster::{self, Grid, Scene},
-    view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, directions, frame_of},
+    view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, frame_of, sets},
     visibility::rays::{Class, RayCaster, Tally},
 };
 use proptest::prelude::*;
@@ -25,7 +25,7 @@ pub(crate) fn framed(
 ) -> (Mesh, ViewSet) {
     let frame = frame_of(mesh);
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
-    let chosen = &directions::dodecahedron()[..count];
+    let chosen = &sets::dodecahedron()[..count];
     let set = ViewSet::around(&sphere, chosen, size, size, projection)
         .expect("views")
         .with_subpixel(bits)

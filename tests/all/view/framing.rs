@@ -31,7 +31,7 @@ proptest! {
         let frame = Frame { exponent };
         let s = Sphere::of_points(&points).expect("points");
         let projection = if orthographic { Projection::Orthographic } else { Projection::Perspective };
-        let set = ViewSet::around(&s, &directions::dodecahedron(), 256, 256, projection).expect("views");
+        let set = ViewSet::around(&s, &named_sets::dodecahedron(), 256, 256, projection).expect("views");
         let entered = set.enter_frame(frame);
         for (view, inside) in set.views.iter().zip(&entered.views) {
             for &p in &points {
@@ -45,7 +45,7 @@ proptest! {
         prop_assert_eq!(&entered.leave_frame(frame), &set);
         // Cameras placed in the frame are the cameras placed outside.
         let placed = ViewSet::around(
-            &s.enter_frame(frame), &directions::dodecahedron(), 256, 256, projection,
+            &s.enter_frame(frame), &named_sets::dodecahedron(), 256, 256, projection,
         ).expect("views");
         prop_assert_eq!(placed, entered);
     }
