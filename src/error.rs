@@ -1,20 +1,33 @@
-//! The one error type, and the exit code each kind of error ends the command with.
+//! The one error type, and the exit code that each kind of error ends the command with.
 
 use std::path::{Path, PathBuf};
 
-/// What went wrong. Every message is one sentence that says what, where, what was expected and what to try.
+/// The reason why something was not done, by kinds that call for different answers. Every message is one sentence that
+/// says what, where, what was expected and what to try.
+///
+/// | kind | who can mend it | exit code of the command |
+/// |---|---|---|
+/// | [`Usage`](Error::Usage) | the caller, by another request | 2 |
+/// | [`Input`](Error::Input) | whoever made the file or the arrays | 3 |
+/// | [`Unsupported`](Error::Unsupported) | a later version, or another format | 4 |
+/// | [`Io`](Error::Io) | whoever owns disk and permissions | 5 |
+/// | [`TargetNotReached`](Error::TargetNotReached) | the caller, by a looser limit | 6 |
+/// | [`Internal`](Error::Internal) | this crate: please report it | 70 |
+/// | [`Interrupted`](Error::Interrupted) | nobody: it was asked for | 130 |
+///
+/// Further kinds may come.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The request itself makes no sense: an option out of range, two options that exclude each other.
     #[error("{0}")]
     Usage(String),
-    /// A file's content is damaged, hostile or inconsistent.
+    /// The content of a file, or of arrays in memory, is damaged, hostile or inconsistent.
     #[error("{}: {message}", path.display())]
     Input {
-        /// The file, or `-` where the bytes came from memory.
+        /// The file, or `-` where the content came from memory.
         path: PathBuf,
-        /// What is wrong, where in the file, and what was expected.
+        /// The fault, its place in the file, and what was expected.
         message: String,
     },
     /// The request is sensible but this version cannot do it.
@@ -27,7 +40,7 @@ pub enum Error {
         action: &'static str,
         /// The file or folder concerned.
         path: PathBuf,
-        /// What the operating system said.
+        /// The answer of the operating system.
         source: std::io::Error,
     },
     /// The result is valid but short of the target, and the caller asked for strictness.
@@ -67,6 +80,25 @@ impl Error {
             path: path.as_ref().to_path_buf(),
             message: message.into(),
         }
+    }
+
+    /// Arrays in memory that are no mesh, or another fault of content without a file.
+    #[must_use]
+    pub(crate) fn content(message: impl Into<String>) -> Self {
+        Self::input("-", message)
+    }
+
+    /// The sentence without the path of the file, for a reader that puts its own before it.
+    pub(crate) fn message(self) -> String {
+        match self {
+            Self::Input { message, .. } => message,
+            other => other.to_string(),
+        }
+    }
+
+    /// The same fault where only this crate can have made it: a bug.
+    pub(crate) fn internal(self) -> Self {
+        Self::Internal(self.message())
     }
 
     /// A refused system call: `action` is a verb such as "read".

@@ -1,4 +1,4 @@
-//! How long-running work tells what it does and learns that it should stop.
+//! Progress of long-running work: it reports its steps here and learns that it should stop.
 
 use crate::{Error, Result};
 

@@ -112,7 +112,7 @@ pub fn shell(
     for (position, t) in parts.positions.iter_mut().zip(lengths) {
         *position = parts.precision.round_vector(point + *position * t);
     }
-    Mesh::new(parts).map_err(Error::Internal)
+    Mesh::new(parts).map_err(Error::internal)
 }
 
 /// The plane that shows most of a cell beside a point: that of both for a segment or line, else one that holds the way

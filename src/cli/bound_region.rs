@@ -283,7 +283,7 @@ fn together(meshes: Vec<Mesh>) -> Result<Mesh> {
         all.triangles.extend(moved);
         all.precision = parts.precision;
     }
-    Mesh::new(all).map_err(Error::Internal)
+    Mesh::new(all).map_err(Error::internal)
 }
 
 /// Three numbers with commas between them.

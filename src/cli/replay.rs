@@ -75,7 +75,7 @@ pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) ->
     let level = if replay.applied() == 0 {
         mesh.clone()
     } else {
-        live.to_mesh().map_err(Error::Internal)?
+        live.to_mesh()?
     };
     for note in io::write(&options.output, &level)? {
         terminal.say(&format!("{}: {note}", options.output.display()));

@@ -2,7 +2,7 @@
 
 use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
-    Error, Progress, Result, parallel,
+    Progress, Result, parallel,
     selfcheck::{GROUPS, Record},
 };
 
@@ -65,7 +65,7 @@ pub(super) fn run(_: &SelfcheckArgs, common: &Common, terminal: &Terminal) -> Re
             machine.features.join(" ")
         }
     );
-    let record = Record::embedded().map_err(Error::Internal)?;
+    let record = Record::embedded()?;
     let mut mismatches = Vec::new();
     for (i, group) in GROUPS.iter().enumerate() {
         terminal.step("goldens", i as u64, GROUPS.len() as u64)?;

@@ -1,15 +1,18 @@
 //! Back from a [`LiveMesh`] to a [`Mesh`]: only what is still used, in the old order.
 
 use super::{LiveMesh, NONE};
-use crate::mesh::{Attributes, Materials, Mesh, MeshParts};
+use crate::{
+    Error, Result,
+    mesh::{Attributes, Materials, Mesh, MeshParts},
+};
 
 impl LiveMesh {
     /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and
     /// wedges are kept.
     ///
     /// # Errors
-    /// A sentence, should a promise of [`Mesh`] not hold (a bug).
-    pub fn to_mesh(&self) -> Result<Mesh, String> {
+    /// [`Error::Internal`], should a promise of [`Mesh`] not hold (a bug).
+    pub fn to_mesh(&self) -> Result<Mesh> {
         let ids: Vec<u32> = (0..self.triangle_ids())
             .filter(|&t| self.triangle(t).is_some())
             .collect();
@@ -28,7 +31,7 @@ impl LiveMesh {
                 .iter()
                 .flat_map(|&w| self.rows.row(w).iter().copied())
                 .collect();
-            Attributes::new(&self.rows.kinds(), values, corners)?
+            Attributes::new(&self.rows.kinds(), values, corners).map_err(Error::internal)?
         };
         let of_triangle = if self.materials.of_triangle.is_empty() {
             Vec::new()
@@ -45,6 +48,7 @@ impl LiveMesh {
             },
             precision: self.precision,
         })
+        .map_err(Error::internal)
     }
 }
 

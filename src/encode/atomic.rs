@@ -51,7 +51,7 @@ pub fn probe(path: &Path) -> Result<()> {
     }
 }
 
-/// What is already there, or why it cannot be replaced.
+/// The file that is already there; an error where it cannot be replaced.
 fn replaceable(target: &Path) -> io::Result<Option<fs::Metadata>> {
     let Ok(found) = fs::metadata(target) else {
         return Ok(None);

@@ -29,7 +29,7 @@ const DEFLATE_RATIO: u64 = 1_032;
 const EXPANSION: u64 = 24;
 /// More bytes than any file within the limits needs: RGB without compression, twice.
 const FILE_LIMIT: u64 = 2 * 3 * (SIDE_LIMIT as u64) * (SIDE_LIMIT as u64);
-/// How every PNG file begins.
+/// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
 /// A picture as a PNG file holds it.

@@ -32,7 +32,7 @@ pub struct Tile<'a, P> {
     pub label: &'a str,
 }
 
-/// How a sheet looks.
+/// Spaces and grey levels of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     /// Space around every picture.

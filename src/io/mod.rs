@@ -5,21 +5,20 @@
 //! notes about what the format cannot keep; reading back what it wrote changes no bit of the rest. The network, and
 //! files other than the one named (material libraries), are never touched.
 
+mod attribute_rows;
 mod decimal;
 mod format;
-mod obj_read;
-mod obj_scan;
-mod obj_write;
+mod obj;
 mod per_vertex;
-mod ply_header;
-mod ply_read;
-mod ply_source;
-mod ply_write;
-mod rows;
-mod stl_read;
-mod stl_write;
+mod ply;
+mod read;
+mod stl;
 mod summary;
+mod words;
+mod write;
 
 pub use crate::encode::{atomic, bytes};
-pub use format::{Encoding, Format, Loaded, encode, read, read_bytes, writable_format, write};
+pub use format::{Encoding, Format};
+pub use read::{Loaded, read, read_bytes};
 pub use summary::Summary;
+pub use write::{encode, writable_format, write};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{Encoding, Format, Loaded};
 use crate::{mesh::ChannelKind, num::Precision};
 
-/// What `inspect` tells of a file.
+/// The contents of a file by number and kind, as `inspect` tells them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Summary {
     /// The format that the content has.
@@ -22,13 +22,13 @@ pub struct Summary {
     pub triangles: usize,
     /// Number of different corners with attributes, as stored.
     pub wedges: usize,
-    /// What the attributes are.
+    /// Kinds of the attributes.
     pub channels: Vec<ChannelKind>,
     /// Names of the materials, with the number of triangles of each.
     pub materials: Vec<(String, usize)>,
     /// Files that define them.
     pub libraries: Vec<String>,
-    /// What the reader could not keep.
+    /// One sentence for everything that the reader could not keep.
     pub notes: Vec<String>,
 }
 

@@ -6,7 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a channel of attribute values means.
+use crate::{Error, Result};
+
+/// Meaning of a channel of attribute values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ChannelKind {
@@ -35,7 +37,7 @@ impl ChannelKind {
 /// One channel: its meaning and where its values lie in a wedge's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Channel {
-    /// What the values mean.
+    /// Meaning of the values.
     pub kind: ChannelKind,
     /// Index of the first value in the row of a wedge.
     pub offset: usize,
@@ -58,12 +60,12 @@ impl Attributes {
     /// wedges of every triangle. Every NaN is replaced by the one that means "absent".
     ///
     /// # Errors
-    /// A sentence, where the sizes do not fit, a corner names a wedge that does not exist, or a value is infinite.
+    /// [`Error::Input`] where the sizes do not fit, a corner names a wedge that does not exist, or a value is infinite.
     pub fn new(
         kinds: &[ChannelKind],
         mut values: Vec<f64>,
         corners: Vec<[u32; 3]>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self> {
         let mut channels = Vec::with_capacity(kinds.len());
         let mut stride = 0;
         for &kind in kinds {
@@ -77,10 +79,10 @@ impl Attributes {
             return Ok(Self::default());
         }
         if !values.len().is_multiple_of(stride) {
-            return Err(format!(
+            return Err(Error::content(format!(
                 "{} attribute values are not a whole number of rows of {stride}",
                 values.len()
-            ));
+            )));
         }
         let wedges = values.len() / stride;
         if let Some((t, c)) = corners
@@ -88,15 +90,17 @@ impl Attributes {
             .enumerate()
             .find_map(|(t, c)| c.iter().find(|&&w| w as usize >= wedges).map(|&w| (t, w)))
         {
-            return Err(format!(
+            return Err(Error::content(format!(
                 "triangle {t} names wedge {c}, but there are {wedges}"
-            ));
+            )));
         }
         for v in &mut values {
             if v.is_nan() {
                 *v = f64::NAN;
             } else if v.is_infinite() {
-                return Err("an attribute value is infinite; expected finite numbers".into());
+                return Err(Error::content(
+                    "an attribute value is infinite; expected finite numbers",
+                ));
             }
         }
         Ok(Self {

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::{
     Attributes, ChannelKind, Materials, Mesh, MeshParts,
-    unite::{compare_rows, unite},
+    group_equal::{compare_rows, group_equal},
 };
 use crate::parallel;
 
@@ -201,7 +201,7 @@ fn attributes(attributes: &Attributes, triangles: &[Placed]) -> Attributes {
             [0, 1, 2].map(|i| (t.vertices[i], wedges[i]))
         })
         .collect();
-    let united = unite(corners.len(), |a, b| {
+    let united = group_equal(corners.len(), |a, b| {
         let ((v, x), (w, y)) = (corners[a], corners[b]);
         v.cmp(&w).then_with(|| {
             if x == y {

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, or remarkable about it.
+//! Faults of a mesh, and what else is remarkable about it.
 //!
 //! Everything is told of the mesh as given: a mesh whose vertices are not welded is all boundary. Connected means
 //! sharing a vertex. A fan is a set of triangles around a vertex that hang together by edges at that vertex; boundary
@@ -8,7 +8,9 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Edge, Edges, Mesh, VertexTriangles, compare_rows, topology::Topology, unite};
+use super::{
+    Edge, Edges, Mesh, VertexTriangles, compare_rows, connectivity::Connectivity, group_equal,
+};
 use crate::{geometry::double_area, num::Frame};
 
 /// One kind of finding: how often it occurs and the first places where it does.
@@ -90,7 +92,7 @@ impl Findings {
     pub fn of(mesh: &Mesh) -> Self {
         let edges = Edges::of(mesh);
         let around = VertexTriangles::of(mesh);
-        let topology = Topology::of(mesh, &edges, &around);
+        let topology = Connectivity::of(mesh, &edges, &around);
         let surface = Surface::of(mesh);
         let (non_manifold_edges, misoriented_edges, seam_edges) = edge_findings(mesh, &edges);
         let mut unreferenced_vertices = Finding::default();
@@ -259,7 +261,7 @@ fn duplicate_positions(mesh: &Mesh) -> Finding {
         // -0 is the same place as +0.
         [p.x + 0.0, p.y + 0.0, p.z + 0.0]
     };
-    let united = unite(mesh.positions().len(), |a, b| {
+    let united = group_equal(mesh.positions().len(), |a, b| {
         compare_rows(&place(a), &place(b))
     });
     repeats(&united.groups, &united.firsts)
@@ -275,7 +277,7 @@ fn duplicate_triangles(mesh: &Mesh) -> Finding {
             set
         })
         .collect();
-    let united = unite(sets.len(), |a, b| sets[a].cmp(&sets[b]));
+    let united = group_equal(sets.len(), |a, b| sets[a].cmp(&sets[b]));
     let mut finding = Finding::default();
     for (t, &group) in united.groups.iter().enumerate() {
         let [a, b, c] = sets[t];

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::Attributes;
+use super::{Attributes, canonical, weld};
 use crate::{
+    Error, Result,
     num::{Frame, Precision},
     parallel,
 };
@@ -72,30 +73,30 @@ impl Mesh {
     /// Validates `parts`. Coordinates are rounded to `parts.precision`.
     ///
     /// # Errors
-    /// A sentence that names the first violation of what [`Mesh`] promises.
-    pub fn new(mut parts: MeshParts) -> Result<Self, String> {
+    /// [`Error::Input`] that names the first violation of what [`Mesh`] promises.
+    pub fn new(mut parts: MeshParts) -> Result<Self> {
         let (vertices, triangles) = (parts.positions.len(), parts.triangles.len());
         if vertices > Self::LIMIT || triangles > Self::LIMIT {
-            return Err(format!(
+            return Err(Error::content(format!(
                 "{vertices} vertices and {triangles} triangles; at most {} of each",
                 Self::LIMIT
-            ));
+            )));
         }
         for (i, p) in parts.positions.iter_mut().enumerate() {
             let rounded = parts.precision.round_vector(*p);
             if !rounded.is_finite() {
-                return Err(format!(
+                return Err(Error::content(format!(
                     "vertex {i} is ({}, {}, {}); expected finite coordinates",
                     p.x, p.y, p.z
-                ));
+                )));
             }
             *p = rounded;
         }
         for (t, corners) in parts.triangles.iter().enumerate() {
             if let Some(v) = corners.iter().find(|&&v| v as usize >= vertices) {
-                return Err(format!(
+                return Err(Error::content(format!(
                     "triangle {t} names vertex {v}, but there are {vertices}"
-                ));
+                )));
             }
         }
         for (what, count) in [
@@ -103,9 +104,9 @@ impl Mesh {
             ("materials", parts.materials.of_triangle.len()),
         ] {
             if count != 0 && count != triangles {
-                return Err(format!(
+                return Err(Error::content(format!(
                     "{what} cover {count} of {triangles} triangles; expected all or none"
-                ));
+                )));
             }
         }
         let names = parts.materials.names.len();
@@ -115,9 +116,9 @@ impl Mesh {
             .iter()
             .find(|&&m| m != Materials::NONE && m as usize >= names)
         {
-            return Err(format!(
+            return Err(Error::content(format!(
                 "a triangle names material {m}, but there are {names}"
-            ));
+            )));
         }
         let MeshParts {
             positions,
@@ -135,11 +136,43 @@ impl Mesh {
         })
     }
 
-    /// A mesh without attributes, for coordinates that carry `f32` precision.
+    /// A mesh from arrays as engines keep them: x, y, z of every vertex, and three vertices of every triangle,
+    /// counter-clockwise seen from outside. Welded and in canonical order as the methods want it: vertices at bit-equal
+    /// places are one, triangles that repeat a vertex and vertices without triangles are gone.
+    ///
+    /// ```
+    /// use lodmark::Mesh;
+    ///
+    /// let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    /// let mesh = Mesh::from_slices(&corners, &[0, 1, 2])?;
+    /// assert_eq!(mesh.triangles().len(), 1);
+    /// assert!(Mesh::from_slices(&corners, &[0, 1, 3]).is_err());
+    /// # Ok::<(), lodmark::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a slice does not hold threes, a coordinate is infinite or NaN, or a triangle names a vertex
+    /// that does not exist.
+    pub fn from_slices(positions: &[f32], triangles: &[u32]) -> Result<Self> {
+        let ((points, []), (corners, [])) =
+            (positions.as_chunks::<3>(), triangles.as_chunks::<3>())
+        else {
+            return Err(Error::content(format!(
+                "{} coordinates and {} corners; expected three of each vertex and triangle",
+                positions.len(),
+                triangles.len()
+            )));
+        };
+        let points = points.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+        let stored = Self::from_triangles(points.collect(), corners.to_vec())?;
+        Ok(canonical(&weld(stored).mesh).mesh)
+    }
+
+    /// A mesh without attributes, as it is, for coordinates that carry `f32` precision.
     ///
     /// # Errors
     /// As [`Mesh::new`].
-    pub fn from_triangles(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, String> {
+    pub fn from_triangles(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         Self::new(MeshParts {
             positions,
             triangles,
@@ -258,8 +291,9 @@ mod tests {
     #[test]
     fn an_index_beyond_the_last_vertex_is_refused_with_its_triangle() {
         let refused = Mesh::from_triangles(corner(), vec![[0, 1, 2], [0, 1, 3]]);
+        let message = refused.map_err(Error::message);
         assert_eq!(
-            refused,
+            message,
             Err("triangle 1 names vertex 3, but there are 3".into())
         );
     }
@@ -285,7 +319,7 @@ mod tests {
             ..MeshParts::default()
         };
         assert_eq!(
-            Mesh::new(parts),
+            Mesh::new(parts).map_err(Error::message),
             Err("attributes cover 1 of 2 triangles; expected all or none".into())
         );
     }

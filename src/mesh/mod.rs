@@ -6,13 +6,13 @@
 mod adjacency;
 mod attributes;
 mod canonical;
+mod connectivity;
 mod digest;
 mod findings;
 pub mod generate;
+mod group_equal;
 mod indexed;
-mod region;
-mod topology;
-mod unite;
+mod part_near_boxes;
 mod weld;
 
 pub use adjacency::{Edge, Edges, VertexTriangles};
@@ -20,6 +20,6 @@ pub use attributes::{Attributes, Channel, ChannelKind};
 pub use canonical::{Canonical, canonical};
 pub use digest::{content_digest, content_sha256};
 pub use findings::{Bounds, Finding, Findings};
+pub(crate) use group_equal::{compare_rows, group_equal};
 pub use indexed::{Materials, Mesh, MeshParts};
-pub(crate) use unite::{compare_rows, unite};
 pub use weld::{Welded, weld};

@@ -2,7 +2,7 @@
 //!
 //! Exact only: places that differ in the last bit stay apart, because what "close" means is not ours to guess.
 
-use super::{Mesh, unite::unite};
+use super::{Mesh, group_equal::group_equal};
 
 /// A mesh in which no two vertices share a place, with the number of vertices that went.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub fn weld(mesh: Mesh) -> Welded {
         .iter()
         .map(|p| [p.x + 0.0, p.y + 0.0, p.z + 0.0])
         .collect();
-    let united = unite(places.len(), |a, b| {
+    let united = group_equal(places.len(), |a, b| {
         let (a, b) = (&places[a], &places[b]);
         a[0].total_cmp(&b[0])
             .then(a[1].total_cmp(&b[1]))

@@ -60,5 +60,5 @@ pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
 /// The first triangles of a mesh.
 fn part(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
     let kept = mesh.triangles().iter().take(triangles).copied().collect();
-    Mesh::from_triangles(mesh.positions().to_vec(), kept).map_err(Error::Internal)
+    Mesh::from_triangles(mesh.positions().to_vec(), kept).map_err(Error::internal)
 }

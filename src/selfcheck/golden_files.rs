@@ -22,7 +22,7 @@ use crate::{
 /// File name of the record.
 pub const RECORD_NAME: &str = "golden.txt";
 
-/// How much differences are magnified in a strip.
+/// Factor by which differences are magnified in a strip.
 const SCALE: u8 = 4;
 
 /// Where the picture of an item lies.
@@ -41,7 +41,7 @@ pub fn picture_path(folder: &Path, name: &str) -> PathBuf {
 pub fn check(folder: &Path, items: &[Item], out: &Path) -> Result<Vec<Mismatch>> {
     let path = folder.join(RECORD_NAME);
     let record = match fs::read_to_string(&path) {
-        Ok(text) => Record::parse(&text).map_err(|message| Error::input(&path, message))?,
+        Ok(text) => Record::parse(&text, &path)?,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Record::default(),
         Err(e) => return Err(Error::io("read", &path, e)),
     };

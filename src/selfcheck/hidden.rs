@@ -55,7 +55,7 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
         collector.text(&format!("{name}/v-mesh-bits"), format!("{v:016x}"));
         let mut replay = Replay::new(&mesh, &outcome.history)?;
         replay.seek(mesh.triangles().len() * 2 / 3)?;
-        let level = replay.live().to_mesh().map_err(Error::Internal)?;
+        let level = replay.live().to_mesh()?;
         collector.mesh(&format!("{name}/replay"), &level);
     }
     let options = guided(QuadricOptions::probabilistic(), 200);

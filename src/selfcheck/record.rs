@@ -1,10 +1,11 @@
 //! The file of goldens: a line `NAME VALUE` for each, sorted by name; lines that begin with `#` say what this is.
 
-use std::{collections::BTreeMap, fmt};
+use std::{collections::BTreeMap, fmt, path::Path};
 
 use serde::Serialize;
 
 use super::Item;
+use crate::{Error, Result};
 
 const HEADER: &str = "\
 # What lodmark computes, to the last bit: `lodmark golden check` compares, `lodmark golden bless` rewrites.
@@ -26,7 +27,7 @@ pub struct Mismatch {
     pub expected: Option<String>,
     /// The value that was computed; `None` where no case has this name.
     pub actual: Option<String>,
-    /// What a comparison of pixels found, where there is a picture.
+    /// Findings of a comparison of pixels, where there is a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pixels: Option<String>,
 }
@@ -69,16 +70,17 @@ impl Record {
     /// The record that this program was built with.
     ///
     /// # Errors
-    /// As [`Record::parse`]: the program was built from a damaged file.
-    pub fn embedded() -> Result<Self, String> {
-        Self::parse(include_str!("../../golden/golden.txt"))
+    /// [`Error::Internal`]: the program was built from a damaged file.
+    pub fn embedded() -> Result<Self> {
+        Self::parse(include_str!("../../golden/golden.txt"), "golden.txt").map_err(Error::internal)
     }
 
-    /// Reads the text of a record.
+    /// Reads the text of a record; `path` is for messages.
     ///
     /// # Errors
-    /// A sentence that names the line that is no `NAME VALUE`, or repeats a name.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// [`Error::Input`] that names the line that is no `NAME VALUE`, or repeats a name.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let wrong = |message: String| Error::input(path.as_ref(), message);
         let mut values = BTreeMap::new();
         for (i, line) in text.lines().enumerate() {
             if line.is_empty() || line.starts_with('#') {
@@ -87,9 +89,9 @@ impl Record {
             let number = i + 1;
             let (name, value) = line
                 .split_once(' ')
-                .ok_or_else(|| format!("line {number} is `{line}`; expected NAME VALUE"))?;
+                .ok_or_else(|| wrong(format!("line {number} is `{line}`; expected NAME VALUE")))?;
             if values.insert(name.to_string(), value.to_string()).is_some() {
-                return Err(format!("line {number} repeats `{name}`"));
+                return Err(wrong(format!("line {number} repeats `{name}`")));
             }
         }
         Ok(Self { values })

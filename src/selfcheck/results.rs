@@ -280,7 +280,7 @@ pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
             ("input", usize::MAX),
         ] {
             replay.seek(triangles)?;
-            let level = replay.live().to_mesh().map_err(crate::Error::Internal)?;
+            let level = replay.live().to_mesh()?;
             collector.mesh(&format!("{name}/{step}"), &level);
         }
     }

@@ -299,7 +299,7 @@ impl<'a> Run<'a> {
         if let Some(held_out) = original.take_held_out() {
             self.contest = Some(Contest {
                 held_out,
-                start: self.live.to_mesh().map_err(Error::Internal)?,
+                start: self.live.to_mesh()?,
             });
         }
         let sum = method.error().sum() as f64;
@@ -415,7 +415,7 @@ impl<'a> Run<'a> {
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
         let mesh = match stop {
             Stop::TargetAboveInput => self.mesh.clone(),
-            _ => self.live.to_mesh().map_err(Error::Internal)?,
+            _ => self.live.to_mesh()?,
         };
         Ok(Outcome {
             mesh,

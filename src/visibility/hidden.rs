@@ -32,7 +32,7 @@ pub fn remove_hidden(mesh: &Mesh, visibility: &Visibility, rings: u32) -> Result
             "no view sees any triangle; expected something to keep: use larger ID buffers".into(),
         ));
     }
-    part(mesh, &kept).map_err(Error::Internal)
+    part(mesh, &kept).map_err(Error::internal)
 }
 
 /// Adds `rings` times the triangles at the vertices of those that are kept.
@@ -64,7 +64,7 @@ fn grow(mesh: &Mesh, kept: &mut [bool], rings: u32) {
 }
 
 /// The kept triangles of a mesh, with what they use.
-fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh, String> {
+fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh> {
     let of_kept = |t: &usize| kept[*t];
     let chosen: Vec<usize> = (0..kept.len()).filter(of_kept).collect();
     let mut vertices = Renumbering::new(mesh.positions().len());

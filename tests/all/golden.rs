@@ -185,19 +185,22 @@ fn a_golden_that_is_missing_or_left_over_is_named() {
     assert_eq!(found[0].actual, None);
     let record = Record::of(&items);
     assert_eq!(record.group("a").len(), 2, "`ab/three` is of another group");
-    assert_eq!(Record::parse(&record.to_text()), Ok(record));
+    let read = Record::parse(&record.to_text(), "-").expect("a record");
+    assert_eq!(read, record);
 }
 
 #[test]
 fn a_damaged_record_is_refused() {
     assert!(
-        Record::parse("a/one\n")
+        Record::parse("a/one\n", "-")
             .expect_err("no value")
+            .to_string()
             .contains("line 1")
     );
     assert!(
-        Record::parse("# x\na/one 1\na/one 1\n")
+        Record::parse("# x\na/one 1\na/one 1\n", "-")
             .expect_err("twice")
+            .to_string()
             .contains("line 3 repeats `a/one`")
     );
     let folder = folder();

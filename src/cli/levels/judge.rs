@@ -90,7 +90,7 @@ impl<'a> Judge<'a> {
             replay.seek(target)?;
             let mesh = match replay.applied() {
                 0 => self.original.clone(),
-                _ => replay.live().to_mesh().map_err(Error::Internal)?,
+                _ => replay.live().to_mesh()?,
             };
             each(percent, &mesh)?;
             let triangles = mesh.triangles().len();

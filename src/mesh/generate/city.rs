@@ -15,7 +15,7 @@ const PITCH: f64 = 2.4;
 const WIDE_EVERY: u32 = 5;
 /// Its width.
 const WIDE: f64 = 4.0;
-/// How far a facade stands behind the street line.
+/// Distance of a facade behind the street line.
 const SETBACKS: [f64; 3] = [0.0, 0.01, 0.03];
 
 /// A city of 20 x 21 box buildings without floors: 4,200 triangles. Blocks have sides from 1.0 to 1.6, the same along a
@@ -93,7 +93,7 @@ pub fn forest() -> Mesh {
     trees(10_000, 500.0)
 }
 
-/// So many trees of the [`forest`] in a disc of some radius.
+/// The first `count` trees of the [`forest`], in a disc of this radius.
 #[must_use]
 pub fn trees(count: u32, radius: f64) -> Mesh {
     let mut random = Pcg32::new(7, 2);

@@ -1,6 +1,6 @@
 //! An object whose complexity nobody sees: a smooth closed casing around a crowded interior.
 //!
-//! What the models "motor" and "blade" are to the papers (hidden interior surfaces, V(M) = 0.264 for the motor of
+//! It stands for the models "motor" and "blade" of the papers (hidden interior surfaces, V(M) = 0.264 for the motor of
 //! Zhang & Turk 2002): the casing has less than a fifth of the area.
 
 use glam::DVec3;

@@ -49,9 +49,9 @@ pub fn mesh(cloud: &Cloud, original: &Mesh) -> Result<Mesh> {
     } else {
         parts.materials.libraries.push(LIBRARY.into());
         let uv = Attributes::new(&[ChannelKind::TexCoord(0)], wedges, corners);
-        parts.attributes = uv.map_err(Error::Internal)?;
+        parts.attributes = uv.map_err(Error::internal)?;
     }
-    Mesh::new(parts).map_err(Error::Internal)
+    Mesh::new(parts).map_err(Error::internal)
 }
 
 const LIBRARY: &str = "billboards.mtl";

@@ -138,7 +138,11 @@ fn both_engines_polish_alike() {
         for (views, set) in view_sets(&sphere).into_iter().take(3) {
             let (a, _, _, layers) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
             let (b, _, _, buckets) = polished::<BucketEngine>(&mesh, &worse, &set, THREE, &mut ());
-            assert_eq!(a.to_mesh(), b.to_mesh(), "{name}, {views}");
+            assert_eq!(
+                a.to_mesh().expect("a mesh"),
+                b.to_mesh().expect("a mesh"),
+                "{name}, {views}"
+            );
             assert_eq!(layers, buckets, "{name}, {views}");
         }
     }
@@ -197,16 +201,16 @@ proptest! {
             let mut fresh = Replay::new(&mesh, &history).expect("the same mesh");
             fresh.seek(level).expect("fits");
             prop_assert_eq!(walk.applied(), fresh.applied());
-            prop_assert_eq!(walk.live().to_mesh(), fresh.live().to_mesh());
+            prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), fresh.live().to_mesh().expect("a mesh"));
         }
         prop_assert_eq!(walk.applied(), history.len());
         if mesh.triangles().len() as u64 > triangles {
-            prop_assert_eq!(walk.live().to_mesh(), Ok(outcome.mesh));
+            prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), outcome.mesh);
         } else {
             prop_assert!(outcome.polish.is_none() && history.is_empty(), "a copy");
         }
         while walk.back() {}
-        prop_assert_eq!(walk.live().to_mesh(), LiveMesh::new(&mesh, history.header().frame).to_mesh());
+        prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), LiveMesh::new(&mesh, history.header().frame).to_mesh().expect("a mesh"));
     }
 
     #[test]

@@ -1,14 +1,18 @@
 //! The numbers of a PLY body, one after the other, from text or from either byte order.
 
-use super::ply_header::Scalar;
+use super::header::Scalar;
+use crate::{
+    encode::byte_cursor::ByteCursor,
+    io::words::{Words, shown},
+};
 
 /// Why there is no next number.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fault {
     /// The file ends here.
     End,
-    /// These bytes (from, to) are not a number of the type.
-    NotANumber(usize, usize),
+    /// The word of this many bytes that was taken last is not a number of the type.
+    NotANumber(usize),
     /// A list of this length is negative, not whole, or longer than the rest of the file.
     Length(f64),
 }
@@ -27,80 +31,40 @@ pub(super) trait Source {
     /// Fewest bytes a number takes.
     fn smallest(kind: Scalar) -> u64;
 
-    /// Where the next number begins, in words.
+    /// The place of the next number in words.
     fn place(&self) -> String;
 
-    /// The bytes from one offset to another, as far as a message should show them.
-    fn shown(&self, from: usize, to: usize) -> String;
+    /// The last `length` bytes that were taken, as far as a message should show them.
+    fn shown(&self, length: usize) -> String;
 
     /// Bytes that are left and are not white space at the end of a text.
     fn excess(&mut self) -> u64;
 }
 
 /// White-space separated numbers; the division into lines is only used in messages.
-pub(super) struct Text<'a> {
-    pub bytes: &'a [u8],
-    pub at: usize,
-    /// Number of the line on which `at` lies.
-    pub line: usize,
-}
-
-impl Text<'_> {
-    fn skip_space(&mut self) {
-        while let Some(&b) = self.bytes.get(self.at) {
-            if !b.is_ascii_whitespace() {
-                break;
-            }
-            self.line += usize::from(b == b'\n');
-            self.at += 1;
-        }
-    }
-
-    fn word(&mut self) -> Result<(usize, usize), Fault> {
-        self.skip_space();
-        let start = self.at;
-        while self
-            .bytes
-            .get(self.at)
-            .is_some_and(|b| !b.is_ascii_whitespace())
-        {
-            self.at += 1;
-        }
-        if self.at == start {
-            Err(Fault::End)
-        } else {
-            Ok((start, self.at))
-        }
-    }
-}
+pub(super) struct Text<'a>(pub Words<'a>);
 
 impl Source for Text<'_> {
     fn number(&mut self, kind: Scalar) -> Result<f64, Fault> {
-        let (from, to) = self.word()?;
-        let parsed = std::str::from_utf8(&self.bytes[from..to])
-            .ok()
-            .and_then(|word| match kind {
-                // Parsed as what it is stored as: rounding twice could end one step off.
-                Scalar::F32 => word.parse::<f32>().ok().map(f64::from),
-                _ => word.parse::<f64>().ok(),
-            });
-        parsed.ok_or_else(|| {
-            // The place in the message is that of the word.
-            self.at = from;
-            Fault::NotANumber(from, to)
-        })
+        let word = self.0.next().ok_or(Fault::End)?;
+        let parsed = std::str::from_utf8(word).ok().and_then(|word| match kind {
+            // Parsed as what it is stored as: rounding twice could end one step off.
+            Scalar::F32 => word.parse::<f32>().ok().map(f64::from),
+            _ => word.parse::<f64>().ok(),
+        });
+        parsed.ok_or(Fault::NotANumber(word.len()))
     }
 
     fn skip(&mut self, _: Scalar, count: u64) -> Result<(), Fault> {
         for _ in 0..count {
-            self.word()?;
+            self.0.next().ok_or(Fault::End)?;
         }
         Ok(())
     }
 
     fn remaining(&self) -> u64 {
         // The last number needs no separator.
-        (self.bytes.len() - self.at) as u64 + 1
+        self.0.remaining() as u64 + 1
     }
 
     fn smallest(_: Scalar) -> u64 {
@@ -108,32 +72,26 @@ impl Source for Text<'_> {
     }
 
     fn place(&self) -> String {
-        format!("line {}", self.line)
+        format!("line {}", self.0.line())
     }
 
-    fn shown(&self, from: usize, to: usize) -> String {
-        String::from_utf8_lossy(&self.bytes[from..to])
-            .chars()
-            .take(40)
-            .collect()
+    fn shown(&self, length: usize) -> String {
+        shown(self.0.behind(length))
     }
 
     fn excess(&mut self) -> u64 {
-        self.skip_space();
-        (self.bytes.len() - self.at) as u64
+        self.0.skip_space();
+        self.0.remaining() as u64
     }
 }
 
 /// Packed numbers in one byte order.
-pub(super) struct Binary<'a, const BIG: bool> {
-    pub bytes: &'a [u8],
-    pub at: usize,
-}
+pub(super) struct Binary<'a, const BIG: bool>(pub ByteCursor<'a>);
 
 impl<const BIG: bool> Binary<'_, BIG> {
+    #[inline]
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
-        let mut raw = *self.bytes[self.at..].first_chunk::<N>().ok_or(Fault::End)?;
-        self.at += N;
+        let mut raw = self.0.array::<N>().ok_or(Fault::End)?;
         if BIG {
             raw.reverse();
         }
@@ -158,15 +116,12 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
 
     fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault> {
         let size = count.saturating_mul(kind.size() as u64);
-        if size > self.remaining() {
-            return Err(Fault::End);
-        }
-        self.at += size as usize;
-        Ok(())
+        let size = usize::try_from(size).map_err(|_| Fault::End)?;
+        self.0.take(size).map(drop).ok_or(Fault::End)
     }
 
     fn remaining(&self) -> u64 {
-        (self.bytes.len() - self.at) as u64
+        self.0.rest().len() as u64
     }
 
     fn smallest(kind: Scalar) -> u64 {
@@ -174,11 +129,11 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
     }
 
     fn place(&self) -> String {
-        format!("byte {}", self.at)
+        format!("byte {}", self.0.offset())
     }
 
-    fn shown(&self, from: usize, to: usize) -> String {
-        format!("{:?}", &self.bytes[from..to])
+    fn shown(&self, length: usize) -> String {
+        format!("{length} bytes")
     }
 
     fn excess(&mut self) -> u64 {

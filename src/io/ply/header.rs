@@ -1,6 +1,6 @@
 //! The header of a PLY file: its elements, their properties, and where the body begins.
 
-/// How the numbers of the body are stored.
+/// Storage of the numbers of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Storage {
     Ascii,
@@ -97,13 +97,12 @@ pub(super) struct Header {
 /// Most elements and most properties of an element: more are a sign of damage, and would cost more than they hold.
 const MOST: usize = 1000;
 
-/// The header, or a message that names the line where it is wrong.
+/// Reads the header, or says on which line it is wrong.
 pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
     // With CR alone at the end of the first line, a byte 10 after `end_header` belongs to the body.
     let old_mac = bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n");
     let (mut at, mut line) = (0, 0);
-    let mut storage = None;
-    let mut elements: Vec<Element> = Vec::new();
+    let mut declared = Declared::default();
     loop {
         let Some((text, next)) = header_line(bytes, at, old_mac) else {
             return Err(format!(
@@ -113,81 +112,105 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, String> {
         };
         at = next;
         line += 1;
-        let wrong = |expected: &str| {
+        let ended = declared.line(line, text).map_err(|expected| {
             let shown: String = String::from_utf8_lossy(text).chars().take(60).collect();
-            Err(format!("line {line}: found `{shown}`; expected {expected}"))
-        };
+            format!("line {line}: found `{shown}`; expected {expected}")
+        })?;
+        if let Some(storage) = ended {
+            return Ok(Header {
+                storage,
+                elements: declared.elements,
+                body: at,
+                body_line: line + 1,
+            });
+        }
+    }
+}
+
+/// The declarations of the lines so far.
+#[derive(Default)]
+struct Declared {
+    storage: Option<Storage>,
+    elements: Vec<Element>,
+}
+
+impl Declared {
+    /// Takes in a line; the last one answers how numbers are stored, a wrong one what was expected.
+    fn line(&mut self, number: usize, text: &[u8]) -> Result<Option<Storage>, &'static str> {
         let text = match std::str::from_utf8(text) {
             Ok(text) => text.trim(),
-            Err(_) if text.starts_with(b"comment") || text.starts_with(b"obj_info") => continue,
-            Err(_) => return wrong("a header line in ASCII"),
+            Err(_) if text.starts_with(b"comment") || text.starts_with(b"obj_info") => {
+                return Ok(None);
+            }
+            Err(_) => return Err("a header line in ASCII"),
         };
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
         match words[..] {
-            ["ply"] if line == 1 => {}
-            _ if line == 1 => return wrong("`ply`, the mark of a PLY file"),
+            ["ply"] if number == 1 => {}
+            _ if number == 1 => return Err("`ply`, the mark of a PLY file"),
             [] | ["comment" | "obj_info", ..] => {}
-            ["format", name, version] => {
-                let found = match name {
-                    "ascii" => Storage::Ascii,
-                    "binary_little_endian" => Storage::LittleEndian,
-                    "binary_big_endian" => Storage::BigEndian,
-                    _ => {
-                        return wrong(
-                            "the format ascii, binary_little_endian or binary_big_endian",
-                        );
-                    }
-                };
-                if version != "1.0" {
-                    return wrong("version 1.0, the only one");
-                }
-                if storage.replace(found).is_some() {
-                    return wrong("one `format` line only");
-                }
-            }
-            ["element", name, count] => {
-                let Ok(count) = count.parse() else {
-                    return wrong("`element NAME COUNT` with a whole number that is not negative");
-                };
-                if elements.iter().any(|e| e.name == name) {
-                    return wrong("every element once");
-                }
-                if elements.len() == MOST {
-                    return wrong("at most 1000 elements");
-                }
-                elements.push(Element {
-                    name: name.into(),
-                    count,
-                    properties: Vec::new(),
-                });
-            }
-            ["property", ref rest @ ..] => {
-                let Some(property) = property(rest) else {
-                    return wrong(
-                        "`property TYPE NAME` or `property list INTEGER-TYPE TYPE NAME`, with a type such as uchar, \
-                         int, float or double",
-                    );
-                };
-                match elements.last_mut() {
-                    Some(element) if element.properties.len() == MOST => {
-                        return wrong("at most 1000 properties of an element");
-                    }
-                    Some(element) => element.properties.push(property),
-                    None => return wrong("an `element` line before its properties"),
-                }
-            }
+            ["format", name, version] => self.format(name, version)?,
+            ["element", name, count] => self.element(name, count)?,
+            ["property", ref rest @ ..] => self.property(rest)?,
             ["end_header"] => {
-                let Some(storage) = storage else {
-                    return wrong("a `format` line before the end of the header");
-                };
-                return Ok(Header {
-                    storage,
-                    elements,
-                    body: at,
-                    body_line: line + 1,
-                });
+                let storage = self.storage;
+                return storage
+                    .map(Some)
+                    .ok_or("a `format` line before the end of the header");
             }
-            _ => return wrong("format, element, property, comment, obj_info or end_header"),
+            _ => return Err("format, element, property, comment, obj_info or end_header"),
+        }
+        Ok(None)
+    }
+
+    fn format(&mut self, name: &str, version: &str) -> Result<(), &'static str> {
+        let found = match name {
+            "ascii" => Storage::Ascii,
+            "binary_little_endian" => Storage::LittleEndian,
+            "binary_big_endian" => Storage::BigEndian,
+            _ => return Err("the format ascii, binary_little_endian or binary_big_endian"),
+        };
+        if version != "1.0" {
+            return Err("version 1.0, the only one");
+        }
+        if self.storage.replace(found).is_some() {
+            return Err("one `format` line only");
+        }
+        Ok(())
+    }
+
+    fn element(&mut self, name: &str, count: &str) -> Result<(), &'static str> {
+        let count = count
+            .parse()
+            .map_err(|_| "`element NAME COUNT` with a whole number that is not negative")?;
+        if self.elements.iter().any(|e| e.name == name) {
+            return Err("every element once");
+        }
+        if self.elements.len() == MOST {
+            return Err("at most 1000 elements");
+        }
+        self.elements.push(Element {
+            name: name.into(),
+            count,
+            properties: Vec::new(),
+        });
+        Ok(())
+    }
+
+    fn property(&mut self, words: &[&str]) -> Result<(), &'static str> {
+        let property = property(words).ok_or(
+            "`property TYPE NAME` or `property list INTEGER-TYPE TYPE NAME`, with a type such as uchar, int, float or \
+             double",
+        )?;
+        match self.elements.last_mut() {
+            Some(element) if element.properties.len() == MOST => {
+                Err("at most 1000 properties of an element")
+            }
+            Some(element) => {
+                element.properties.push(property);
+                Ok(())
+            }
+            None => Err("an `element` line before its properties"),
         }
     }
 }

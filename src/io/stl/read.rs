@@ -9,8 +9,14 @@
 
 use glam::DVec3;
 
-use super::{Encoding, Loaded};
-use crate::mesh::Mesh;
+use crate::{
+    Error,
+    io::{
+        Encoding, Loaded,
+        words::{Words, shown},
+    },
+    mesh::Mesh,
+};
 
 /// Bytes before the first triangle, and of every triangle.
 const HEADER: usize = 84;
@@ -25,14 +31,14 @@ fn declared(bytes: &[u8]) -> Option<u32> {
 }
 
 /// Whether the length is exactly that of a binary file.
-pub(super) fn is_binary(bytes: &[u8]) -> bool {
+pub(in crate::io) fn is_binary(bytes: &[u8]) -> bool {
     declared(bytes)
         .is_some_and(|n| HEADER as u64 + RECORD as u64 * u64::from(n) == bytes.len() as u64)
 }
 
 /// Whether the first words are those of a text file.
-pub(super) fn is_ascii(bytes: &[u8]) -> bool {
-    let mut words = Words::new(&bytes[..bytes.len().min(1024)]);
+pub(in crate::io) fn is_ascii(bytes: &[u8]) -> bool {
+    let mut words = Words::new(&bytes[..bytes.len().min(1024)], 0, 1);
     if !words.next_is("solid") {
         return false;
     }
@@ -41,8 +47,8 @@ pub(super) fn is_ascii(bytes: &[u8]) -> bool {
     next.eq_ignore_ascii_case(b"facet") || next.eq_ignore_ascii_case(b"endsolid")
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, String> {
-    let starts_solid = Words::new(bytes).next_is("solid");
+pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
+    let starts_solid = Words::new(bytes, 0, 1).next_is("solid");
     // A name, colours or nothing fill the header of a binary file, then follows the count: seldom all in letters.
     let is_text = bytes
         .iter()
@@ -124,42 +130,44 @@ fn soup(positions: Vec<DVec3>) -> Result<Mesh, String> {
     let triangles = (0..count as u32)
         .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
         .collect();
-    Mesh::from_triangles(positions, triangles)
+    Mesh::from_triangles(positions, triangles).map_err(Error::message)
 }
 
 fn text(bytes: &[u8]) -> Result<Loaded, String> {
-    let mut words = Words::new(bytes);
+    let mut words = Words::new(bytes, 0, 1);
     let (mut positions, mut facet) = (Vec::new(), Vec::new());
     let (mut solids, mut polygons) = (0_usize, 0_usize);
     while words.peek().is_some() {
-        words.expect(&["solid"], "the start of a solid")?;
+        expect(&mut words, &["solid"], "the start of a solid")?;
         words.skip_line();
         solids += 1;
-        while words.expect(
+        while expect(
+            &mut words,
             &["facet", "endsolid"],
             "the next facet or the end of the solid",
         )? == 0
         {
-            words.expect(&["normal"], "the normal of the facet")?;
+            expect(&mut words, &["normal"], "the normal of the facet")?;
             for _ in 0..3 {
-                words.float("a coordinate of the normal", false)?;
+                float(&mut words, "a coordinate of the normal", false)?;
             }
-            words.expect(&["outer"], "the outer loop of the facet")?;
-            words.expect(&["loop"], "the outer loop of the facet")?;
+            expect(&mut words, &["outer"], "the outer loop of the facet")?;
+            expect(&mut words, &["loop"], "the outer loop of the facet")?;
             facet.clear();
-            while words.expect(
+            while expect(
+                &mut words,
                 &["vertex", "endloop"],
                 "the next vertex or the end of the loop",
             )? == 0
             {
-                let [x, y, z] = [(); 3].map(|()| words.float("a finite coordinate", true));
+                let [x, y, z] = [(); 3].map(|()| float(&mut words, "a finite coordinate", true));
                 facet.push(DVec3::new(x?, y?, z?));
             }
-            words.expect(&["endfacet"], "the end of the facet")?;
+            expect(&mut words, &["endfacet"], "the end of the facet")?;
             if facet.len() < 3 {
                 return Err(format!(
                     "line {}: this facet has {} corners; expected at least three",
-                    words.line,
+                    words.line(),
                     facet.len()
                 ));
             }
@@ -186,85 +194,39 @@ fn text(bytes: &[u8]) -> Result<Loaded, String> {
     })
 }
 
-/// Words of a text, and the line of the last one.
-struct Words<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    line: usize,
+/// Takes the next word, and says which of `words` it is.
+fn expect(text: &mut Words<'_>, words: &[&str], what: &str) -> Result<usize, String> {
+    let found = text.next();
+    found
+        .and_then(|found| {
+            words
+                .iter()
+                .position(|word| found.eq_ignore_ascii_case(word.as_bytes()))
+        })
+        .ok_or_else(|| wrong(text, found, &format!("`{}` ({what})", words.join("` or `"))))
 }
 
-impl<'a> Words<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
-        Self {
-            bytes,
-            at: 0,
-            line: 1,
+/// Takes the next word as a number.
+fn float(text: &mut Words<'_>, what: &str, finite: bool) -> Result<f64, String> {
+    let found = text.next();
+    found
+        .and_then(|word| std::str::from_utf8(word).ok())
+        .and_then(|word| word.parse::<f32>().ok())
+        .filter(|x| x.is_finite() || !finite)
+        .map(f64::from)
+        .ok_or_else(|| wrong(text, found, what))
+}
+
+/// The sentence about a word that is not what was expected.
+fn wrong(text: &Words<'_>, found: Option<&[u8]>, expected: &str) -> String {
+    match found {
+        Some(word) => {
+            let shown = shown(word);
+            format!("line {}: found `{shown}`; expected {expected}", text.line())
         }
-    }
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        self.peek().inspect(|word| self.at += word.len())
-    }
-
-    fn peek(&mut self) -> Option<&'a [u8]> {
-        while let Some(&b) = self.bytes.get(self.at) {
-            if !b.is_ascii_whitespace() {
-                break;
-            }
-            self.line += usize::from(b == b'\n');
-            self.at += 1;
-        }
-        let rest = &self.bytes[self.at..];
-        let end = rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(rest.len());
-        (end > 0).then(|| &rest[..end])
-    }
-
-    fn next_is(&mut self, word: &str) -> bool {
-        self.next()
-            .is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes()))
-    }
-
-    /// Goes to the end of the line: names may hold anything.
-    fn skip_line(&mut self) {
-        let rest = &self.bytes[self.at..];
-        self.at += rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
-    }
-
-    /// Which of the words comes next.
-    fn expect(&mut self, words: &[&str], what: &str) -> Result<usize, String> {
-        let found = self.next();
-        found
-            .and_then(|found| {
-                words
-                    .iter()
-                    .position(|word| found.eq_ignore_ascii_case(word.as_bytes()))
-            })
-            .ok_or_else(|| self.wrong(found, &format!("`{}` ({what})", words.join("` or `"))))
-    }
-
-    fn float(&mut self, what: &str, finite: bool) -> Result<f64, String> {
-        let found = self.next();
-        found
-            .and_then(|word| std::str::from_utf8(word).ok())
-            .and_then(|word| word.parse::<f32>().ok())
-            .filter(|x| x.is_finite() || !finite)
-            .map(f64::from)
-            .ok_or_else(|| self.wrong(found, what))
-    }
-
-    fn wrong(&self, found: Option<&[u8]>, expected: &str) -> String {
-        match found {
-            Some(word) => {
-                let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
-                format!("line {}: found `{shown}`; expected {expected}", self.line)
-            }
-            None => format!(
-                "line {}: the file ends; expected {expected}; it may be cut off",
-                self.line
-            ),
-        }
+        None => format!(
+            "line {}: the file ends; expected {expected}; it may be cut off",
+            text.line()
+        ),
     }
 }

@@ -5,13 +5,14 @@
 
 use std::{cmp::Ordering, collections::BTreeMap, io::Write};
 
-use super::{decimal, obj_scan::PRECISION, per_vertex, per_vertex::PerVertex};
+use super::normal_form::PRECISION;
 use crate::{
-    mesh::{Channel, ChannelKind, Materials, Mesh, compare_rows, unite},
+    io::{decimal, per_vertex, per_vertex::PerVertex},
+    mesh::{Channel, ChannelKind, Materials, Mesh, compare_rows, group_equal},
     num::Precision,
 };
 
-pub(super) fn encode(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
+pub(in crate::io) fn encode(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
     let attributes = mesh.attributes();
     let per_vertex = PerVertex::of(mesh);
     let mut notes = notes(mesh, &per_vertex);
@@ -170,7 +171,7 @@ impl Listed {
             };
         };
         let wedges: Vec<u32> = attributes.corners().as_flattened().to_vec();
-        let united = unite(wedges.len(), |a, b| {
+        let united = group_equal(wedges.len(), |a, b| {
             if wedges[a] == wedges[b] {
                 return Ordering::Equal;
             }

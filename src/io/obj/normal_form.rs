@@ -10,14 +10,14 @@
 //! Of the file, `v vt vn f usemtl mtllib` are read; the rest is told of in notes.
 
 use std::{
-    borrow::Cow,
     collections::{BTreeMap, BTreeSet},
     io::Write,
 };
 
-use crate::{mesh::Materials, num::Precision};
+use super::lines::{float, keyword, lines, words};
+use crate::{io::words::shown, mesh::Materials, num::Precision};
 
-/// What a scan of the text brings to light.
+/// The normal form of a text, and what `tobj` cannot see of it.
 pub(super) struct Scan {
     /// `v`, `vt` and `vn` lines in normal form.
     pub vertex_text: Vec<u8>,
@@ -35,7 +35,7 @@ pub(super) struct Scan {
     pub materials: Materials,
     /// The precision that a comment of our own writer tells.
     pub precision: Option<Precision>,
-    /// What is not kept.
+    /// Notes about what is not kept.
     pub notes: Vec<String>,
 }
 
@@ -45,65 +45,8 @@ const ABSENT: u32 = u32::MAX;
 /// Numbers and names of the three kinds of vertex lines.
 const KINDS: [&str; 3] = ["v", "vt", "vn"];
 
-/// A comment in which [`super::obj_write`] tells the precision, which text does not show.
+/// A comment in which [`super::write`] tells the precision, which text does not show.
 pub(super) const PRECISION: &str = "# lodmark precision ";
-
-/// Lines with their numbers from 1; a backslash at the end joins a line to the next.
-pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
-    let mut rest = bytes;
-    let mut number = 0;
-    std::iter::from_fn(move || {
-        if rest.is_empty() {
-            return None;
-        }
-        let first = number + 1;
-        let mut joined: Option<Vec<u8>> = None;
-        loop {
-            number += 1;
-            let (line, after) = match rest.iter().position(|&b| b == b'\n') {
-                Some(end) => (&rest[..end], &rest[end + 1..]),
-                None => (rest, &rest[rest.len()..]),
-            };
-            rest = after;
-            let line = line.trim_ascii();
-            let (line, continues) = match line.strip_suffix(b"\\") {
-                Some(line) if !rest.is_empty() && !line.starts_with(b"#") => (line, true),
-                _ => (line, false),
-            };
-            if continues || joined.is_some() {
-                let joined = joined.get_or_insert_default();
-                joined.extend_from_slice(line);
-                joined.push(b' ');
-            }
-            if !continues {
-                return Some((first, joined.map_or(Cow::Borrowed(line), Cow::Owned)));
-            }
-        }
-    })
-}
-
-/// The first word of a line, and the rest without a comment.
-pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
-    let line = line.trim_ascii();
-    let end = line
-        .iter()
-        .position(u8::is_ascii_whitespace)
-        .unwrap_or(line.len());
-    (&line[..end], line[end..].trim_ascii())
-}
-
-/// The words of a line up to a comment.
-pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let end = rest.iter().position(|&b| b == b'#').unwrap_or(rest.len());
-    rest[..end]
-        .split(u8::is_ascii_whitespace)
-        .filter(|word| !word.is_empty())
-}
-
-/// A word as a message shows it.
-pub(super) fn shown(word: &[u8]) -> String {
-    String::from_utf8_lossy(word).chars().take(40).collect()
-}
 
 /// Reads the structure of the text.
 pub(super) fn scan(bytes: &[u8]) -> Result<Scan, String> {
@@ -144,7 +87,7 @@ struct Scanner {
     material: u32,
     materials: Materials,
     precision: Option<Precision>,
-    /// How often lines of a kind that is not kept occur.
+    /// Number of lines of every kind that is not kept.
     dropped: BTreeMap<String, usize>,
     slivers: usize,
     extra_uvs: bool,
@@ -401,9 +344,4 @@ impl Scanner {
         }
         notes
     }
-}
-
-/// A number in text.
-pub(super) fn float(word: &[u8]) -> Option<f64> {
-    std::str::from_utf8(word).ok()?.parse().ok()
 }

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use super::decimal;
 use crate::{
     Error, Result,
+    io::decimal,
     mesh::Mesh,
     num::{Frame, Precision, math},
 };
 
-pub(super) fn encode(mesh: &Mesh, text: bool) -> Result<(Vec<u8>, Vec<String>)> {
+pub(in crate::io) fn encode(mesh: &Mesh, text: bool) -> Result<(Vec<u8>, Vec<String>)> {
     let notes = notes(mesh);
     for (v, &p) in mesh.positions().iter().enumerate() {
         if !Precision::F32.round_vector(p).is_finite() {

@@ -13,7 +13,7 @@ const GRID: usize = 128;
 /// Rows of cells that are looked through for one face. A mesh may consist of faces across all of it.
 const ROWS: usize = 64;
 
-/// For every corner of the grid, how many of the cells below it along all axes are marked.
+/// Number of marked cells below every corner of the grid, along all axes.
 struct Counts(Vec<u32>);
 
 impl Counts {
@@ -41,7 +41,7 @@ impl Counts {
         Self(counts)
     }
 
-    /// How many cells are marked from one to another, both included.
+    /// Number of marked cells from one to another, both included.
     fn within(&self, a: [usize; 3], b: [usize; 3]) -> u32 {
         let below = |x: usize, y: usize, z: usize| self.0[Self::at(x, y, z)];
         let [x, y, z] = b.map(|i| i + 1);

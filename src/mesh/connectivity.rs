@@ -1,9 +1,9 @@
-//! What hangs together in a mesh: components, fans around vertices, boundary loops. No manifold assumption.
+//! Connectivity of a mesh: components, fans around vertices, boundary loops. No manifold assumption.
 
 use super::{Edge, Edges, Finding, Mesh, VertexTriangles};
 
-/// What hangs together.
-pub(super) struct Topology {
+/// Counts of connected parts.
+pub(super) struct Connectivity {
     /// Sets of triangles that share vertices.
     pub components: usize,
     /// Chains of boundary edges, followed fan by fan.
@@ -12,8 +12,8 @@ pub(super) struct Topology {
     pub non_manifold_vertices: Finding,
 }
 
-impl Topology {
-    /// O(n log n), whatever the number of triangles at a vertex.
+impl Connectivity {
+    /// Counts the parts. O(n log n), whatever the number of triangles at a vertex.
     pub(super) fn of(mesh: &Mesh, edges: &Edges, around: &VertexTriangles) -> Self {
         let triangles = mesh.triangles();
         let boundary: Vec<Edge> = edges

@@ -5,21 +5,21 @@
 
 use std::fmt::Write;
 
-use super::{decimal, per_vertex, per_vertex::PerVertex};
 use crate::{
+    io::{decimal, per_vertex, per_vertex::PerVertex},
     mesh::{Channel, ChannelKind, Mesh},
     num::Precision,
 };
 
-/// How numbers are stored.
+/// Storage of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Numbers {
+pub(in crate::io) enum Numbers {
     Text,
     LittleEndian,
     BigEndian,
 }
 
-pub(super) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
+pub(in crate::io) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
     let plan = Plan::of(mesh);
     let mut notes = plan.notes(mesh);
     let mut sink = Sink {

@@ -1,4 +1,4 @@
-//! Reads Wavefront OBJ through the `tobj` crate, on the normal form that [`super::obj_scan`] makes.
+//! Reads Wavefront OBJ through the `tobj` crate, on the normal form that [`super::normal_form`] makes.
 //!
 //! `tobj` numbers vertices in the order of their first use; a polygon through all of them, put before the faces, makes
 //! that the order of the file, with the vertices that no face uses. Polygons become fans around their first corner.
@@ -12,17 +12,18 @@ use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use super::{
-    Encoding, Loaded,
-    obj_scan::{self, Scan},
-    rows,
+    lines,
+    normal_form::{self, Scan},
 };
 use crate::{
-    mesh::{Attributes, ChannelKind, Mesh, MeshParts, unite},
+    Error,
+    io::{Encoding, Loaded, attribute_rows, words::shown},
+    mesh::{Attributes, ChannelKind, Mesh, MeshParts, group_equal},
     num::{Frame, Precision, math},
 };
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, String> {
-    let scan = obj_scan::scan(bytes)?;
+pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
+    let scan = normal_form::scan(bytes)?;
     let parsed = parse(&scan).map_err(|error| {
         let place = first_bad_number(bytes, Precision::F64);
         place.unwrap_or_else(|| format!("{error}; expected the vertices and faces of an OBJ mesh"))
@@ -45,7 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, String> {
     })
 }
 
-/// What `tobj` reads: values in the order of the file, and three corners (v, vt, vn) per triangle. The first texture
+/// The numbers that `tobj` reads: values in the order of the file, and three corners (v, vt, vn) per triangle. The first texture
 /// coordinate and the first normal are NaN.
 struct Parsed {
     positions: Vec<DVec3>,
@@ -124,20 +125,20 @@ fn load(text: &mut impl BufRead) -> Result<tobj::Mesh, String> {
 
 /// Where a number of the text is none, or not finite; `tobj` does not tell.
 fn first_bad_number(bytes: &[u8], precision: Precision) -> Option<String> {
-    for (line, text) in obj_scan::lines(bytes) {
-        let (kind, rest) = obj_scan::keyword(&text);
+    for (line, text) in lines::lines(bytes) {
+        let (kind, rest) = lines::keyword(&text);
         let (numbers, may_be_nan) = match kind {
             b"v" => (4, false),
             b"vt" => (2, true),
             b"vn" => (3, true),
             _ => continue,
         };
-        let words: Vec<&[u8]> = obj_scan::words(rest).collect();
+        let words: Vec<&[u8]> = lines::words(rest).collect();
         // The fourth of six numbers is a colour.
         let numbers = if words.len() > 4 { 3 } else { numbers };
         for (i, word) in words.into_iter().take(numbers).enumerate() {
-            let found = obj_scan::shown(word);
-            match obj_scan::float(word) {
+            let found = shown(word);
+            match lines::float(word) {
                 None => return Some(format!("line {line}: found `{found}`; expected a number")),
                 Some(w) if i == 3 && w == 0.0 => {
                     return Some(format!(
@@ -208,7 +209,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
     }
     let mut attributes = Attributes::default();
     if !kinds.is_empty() {
-        let united = unite(corners.len(), |a, b| corners[a].cmp(&corners[b]));
+        let united = group_equal(corners.len(), |a, b| corners[a].cmp(&corners[b]));
         let mut values = Vec::new();
         for &corner in &united.firsts {
             let [v, vt, vn] = corners[corner].map(|i| i as usize);
@@ -222,9 +223,9 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
                 values.extend(&scan.colors[v]);
             }
         }
-        rows::settle(&mut values, &kinds, precision);
+        attribute_rows::settle(&mut values, &kinds, precision);
         let (corners, _) = united.groups.as_chunks::<3>();
-        attributes = Attributes::new(&kinds, values, corners.to_vec())?;
+        attributes = Attributes::new(&kinds, values, corners.to_vec()).map_err(Error::message)?;
     }
     let (corners, _) = corners.as_chunks::<3>();
     Mesh::new(MeshParts {
@@ -234,4 +235,5 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
         materials: scan.materials.clone(),
         precision,
     })
+    .map_err(Error::message)
 }

@@ -4,7 +4,7 @@ use crate::parallel;
 use std::cmp::Ordering;
 
 /// Items with equal keys share a group.
-pub(crate) struct United {
+pub(crate) struct EqualGroups {
     /// The group of every item; groups are numbered in the order of their first members.
     pub groups: Vec<u32>,
     /// The first member of every group, ascending.
@@ -13,10 +13,10 @@ pub(crate) struct United {
 
 /// Groups the items `0..count` that `compare` calls equal (a total order). O(n log n), the same for every number of
 /// threads; fewer than 2^32 groups.
-pub(crate) fn unite(
+pub(crate) fn group_equal(
     count: usize,
     compare: impl Fn(usize, usize) -> Ordering + Sync + Copy,
-) -> United {
+) -> EqualGroups {
     let mut order: Vec<usize> = (0..count).collect();
     parallel::sort_numbers(&mut order, &|a, b| compare(a, b).then(a.cmp(&b)));
     let mut leaders = vec![0_usize; count];
@@ -35,7 +35,7 @@ pub(crate) fn unite(
             groups[item] = groups[leader];
         }
     }
-    United { groups, firsts }
+    EqualGroups { groups, firsts }
 }
 
 /// Compares rows of numbers bit for bit, in the order of the numbers: equal only where all bits are.
@@ -54,8 +54,8 @@ mod tests {
     #[test]
     fn groups_are_numbered_by_their_first_members() {
         let items = [7, 3, 7, 1, 3];
-        let united = unite(items.len(), |a, b| items[a].cmp(&items[b]));
-        assert_eq!(united.groups, [0, 1, 0, 2, 1]);
-        assert_eq!(united.firsts, [0, 1, 3]);
+        let found = group_equal(items.len(), |a, b| items[a].cmp(&items[b]));
+        assert_eq!(found.groups, [0, 1, 0, 2, 1]);
+        assert_eq!(found.firsts, [0, 1, 3]);
     }
 }
