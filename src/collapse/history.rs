@@ -181,7 +181,7 @@ impl Observer for Recorder {
         });
     }
 
-    fn thinned(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
+    fn collapsed_in_tile(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
         let to = live.frame().leave(to);
         self.history.records.push(Stored {
             record: Record::Collapse { keep, gone, to },

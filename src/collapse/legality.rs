@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LiveMesh, Ring,
+    LiveMesh, Refusal, Ring,
     ring::{Anchor, normal},
 };
 
@@ -53,127 +53,10 @@ impl Default for Rules {
     }
 }
 
-macro_rules! refusals {
-    ($($(#[doc = $doc:literal])+ $name:ident => $key:literal,)+) => {
-        /// Why a collapse is not allowed.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-        #[serde(rename_all = "kebab-case")]
-        pub enum Refusal { $($(#[doc = $doc])+ $name,)+ }
-
-        impl Refusal {
-            /// Every rule, in the order in which they are tested.
-            pub const ALL: &[Self] = &[$(Self::$name,)+];
-
-            /// The rule's name in reports.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$name => $key,)+ }
-            }
-        }
-    };
-}
-
 /// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
 /// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit. A
-/// method may have a lower one: [`Method::ring_limit`](super::Method::ring_limit).
+/// method may have a lower one: [`Plan::ring_limit`](super::Plan::ring_limit).
 pub const RING_LIMIT: usize = 512;
-
-refusals! {
-    /// More than [`RING_LIMIT`] faces touch the edge, or than the method looks at.
-    Valence => "valence",
-    /// Nothing would be left of the mesh.
-    LastTriangle => "last-triangle",
-    /// A common neighbour of both ends forms no face with them: a hole or handle would close.
-    Link => "link",
-    /// An edge inside joins two boundary (or pinched, or non-manifold) vertices: the surface would be pinched there.
-    Pinch => "pinch",
-    /// A triangle with two boundary edges would vanish, or a loop of three boundary edges would close.
-    Ear => "ear",
-    /// Both ends are corners of the boundary or of a non-manifold curve.
-    Corner => "corner",
-    /// Two faces would coincide.
-    Duplicate => "duplicate",
-    /// Both ends are locked, or one is and the other may not move there.
-    Locked => "locked",
-    /// The edge is no feature but both ends lie on features: a chart would be pinched.
-    FeaturePinch => "feature-pinch",
-    /// Both ends are ends or branchings of features.
-    FeatureCorner => "feature-corner",
-    /// The method found no position, or the file's precision cannot hold it.
-    Unplaced => "unplaced",
-    /// A face would become degenerate.
-    Degenerate => "degenerate",
-    /// A face would turn too far.
-    Flip => "flip",
-    /// Two neighbouring faces would fold onto each other.
-    Fold => "fold",
-    /// A face would be mirrored in texture space.
-    Mirror => "mirror",
-    /// The method itself refuses.
-    Method => "method",
-    /// A new face would be too far from the faces before it.
-    LocalBound => "local-bound",
-    /// A new face would be too far from the original.
-    Strays => "strays",
-    /// A part of the original would be too far from the new mesh.
-    Uncovers => "uncovers",
-    /// The faces before cannot be mapped onto the faces after: no disc, or folded.
-    Unmapped => "unmapped",
-    /// A point would be farther from what stands for it than is allowed.
-    Bound => "bound",
-}
-
-/// How often each rule refused.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals([u64; Refusal::ALL.len()]);
-
-impl Refusals {
-    /// Counts one.
-    pub fn add(&mut self, refusal: Refusal) {
-        self.0[refusal as usize] += 1;
-    }
-
-    /// Adds the counts of another run.
-    pub(super) fn add_all(&mut self, other: &Self) {
-        for (own, more) in self.0.iter_mut().zip(other.0) {
-            *own += more;
-        }
-    }
-
-    /// How often a rule refused.
-    #[must_use]
-    pub fn count(&self, refusal: Refusal) -> u64 {
-        self.0[refusal as usize]
-    }
-
-    /// How often any rule refused.
-    #[must_use]
-    pub fn total(&self) -> u64 {
-        self.0.iter().sum()
-    }
-
-    /// Every rule that refused at least once, with its count.
-    pub fn iter(&self) -> impl Iterator<Item = (Refusal, u64)> {
-        let all = Refusal::ALL.iter().map(|&r| (r, self.count(r)));
-        all.filter(|&(_, count)| count > 0)
-    }
-}
-
-impl std::fmt::Display for Refusals {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let rules: Vec<String> = self
-            .iter()
-            .map(|(r, count)| format!("{}: {count}", r.name()))
-            .collect();
-        f.write_str(&rules.join(", "))
-    }
-}
-
-impl Serialize for Refusals {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.iter().map(|(r, count)| (r.name(), count)))
-    }
-}
 
 /// Where the rules that do not depend on the new position allow the new vertex.
 ///

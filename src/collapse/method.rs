@@ -1,4 +1,6 @@
-//! What a method of simplification is to the [`Engine`](super::Engine): it places the new vertex and prices it.
+//! The seam between the [`Engine`](super::Engine) and a method of simplification.
+
+use std::any::Any;
 
 use glam::DVec3;
 
@@ -81,107 +83,133 @@ impl<'a> Site<'a> {
 pub struct Proposal {
     /// Where the new vertex lies.
     pub position: Admitted,
-    /// First key: change of the image error, and what the method charges for geometry beside it; 0 for methods without
-    /// images. May be negative.
-    pub image: i64,
-    /// Second key: the geometric cost; keeps hidden parts, whose image cost is 0, in shape.
-    pub geometric: f64,
+    /// First key of the order of collapses, an exact integer that may be negative; 0 for methods that need none.
+    pub primary: i64,
+    /// Second key; decides where first keys are equal.
+    pub secondary: f64,
 }
 
-/// A method of simplification.
+/// Accuracy of an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evaluation {
+    /// To the last bit: the edge may be collapsed.
+    Exact,
+    /// Keys that are only about right, for a fraction of the time: the edge waits under them until it comes to the
+    /// front of the queue, and is evaluated exactly there.
+    Rough,
+}
+
+/// Constants by which the engine schedules the evaluations of a method; the same during a whole run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Most faces around an edge that may collapse, at most [`RING_LIMIT`]: fewer where evaluations are dear or would
+    /// be refused anyway.
+    pub ring_limit: usize,
+    /// Whether an edge is evaluated roughly before it comes to the front of the queue.
+    pub rough_first: bool,
+    /// Number of edges that wait under an estimate and are evaluated together, on all threads, when the first of them
+    /// comes to the front; 1 where evaluations are too short to be shared.
+    pub look_ahead: usize,
+    /// Fewest evaluations of a batch that are worth sharing among threads one by one.
+    pub shared_batch: usize,
+    /// Evaluations that are worth a task of their own. Batches of at most this many stay on one thread.
+    pub evaluations_per_task: usize,
+}
+
+impl Default for Plan {
+    /// For short evaluations.
+    fn default() -> Self {
+        Self {
+            ring_limit: RING_LIMIT,
+            rough_first: false,
+            look_ahead: 1,
+            shared_batch: usize::MAX,
+            evaluations_per_task: 512,
+        }
+    }
+}
+
+/// Verdict of a method on a collapse that is about to be committed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Review {
+    /// Commit it.
+    Commit,
+    /// The proposal no longer holds, because of a change that did not touch the edge's ring: evaluate the edge again.
+    Outdated,
+    /// It would exceed the method's error limit: end the run before it.
+    LimitReached,
+}
+
+/// Costs from sums that a method keeps, without a visit to an edge's ring.
 ///
-/// `&self` and a scratch per thread, because candidates are evaluated in parallel.
-pub trait Method: Sync {
-    /// Buffers that evaluations reuse. They never influence a result.
-    type Scratch: Send;
-
-    /// Fresh buffers for a thread.
-    fn scratch(&self) -> Self::Scratch;
-
-    /// Buffers for evaluations that nothing else runs beside: such an evaluation may use other threads itself.
-    fn lone_scratch(&self) -> Self::Scratch {
-        self.scratch()
-    }
-
-    /// Places the new vertex of the site's edge and prices the collapse.
-    ///
-    /// # Errors
-    /// The rule that forbids it: from [`Site::admit`], or [`Refusal::Unplaced`] or [`Refusal::Method`].
-    fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal>;
-
-    /// What the collapse of an edge would cost if no rule forbade its best place: the second key, from sums that the
-    /// method keeps, without a look at the ring. `None` where the method has no such sums or they do not tell.
-    ///
-    /// Where it is given, an edge waits in the queue under its estimate and is proposed only when that comes to the
-    /// front; so estimates decide the order in which edges are looked at, and proposals what is collapsed. Only for
-    /// methods whose first key is always 0.
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        let _ = (live, edge);
-        None
-    }
-
-    /// Whether [`Method::glance`] is to be asked before [`Method::propose`].
-    fn glances(&self) -> bool {
-        false
-    }
-
-    /// A proposal whose keys are only about right, for a fraction of the time.
-    ///
-    /// Where the method glances, an edge waits in the queue under such keys, and is proposed only when they come to the
-    /// front.
-    ///
-    /// # Errors
-    /// As [`Method::propose`].
-    fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.propose(site, scratch)
-    }
+/// An edge waits in the queue under its estimate and is proposed only when that comes to the front; so estimates decide
+/// the order in which edges are evaluated, and proposals which are collapsed. Only for methods whose first key is
+/// always 0.
+pub trait Estimates: Sync {
+    /// The second key of an edge's collapse if no rule forbade its best place; `None` where the sums do not tell.
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64>;
 
     /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
     /// rose is noticed in time at the front of the queue.
-    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
-        let _ = (live, edge);
-        true
+    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool;
+}
+
+/// A method of simplification: it places new vertices and prices collapses.
+///
+/// Nothing has a default, so that a method around another one cannot forget to forward.
+pub trait Method: Send + Sync {
+    /// How evaluations are scheduled.
+    fn plan(&self) -> Plan;
+
+    /// The costs that can be had without an evaluation, for methods that keep sums.
+    fn estimates(&self) -> Option<&dyn Estimates>;
+
+    /// Places the new vertex of the site's edge and prices the collapse. Called in parallel, with a scratch per thread;
+    /// `how` is [`Evaluation::Exact`] unless the plan asks for rough evaluations.
+    ///
+    /// # Errors
+    /// The rule that forbids it, from [`Site::admit`]; [`Refusal::Unplaced`]; or a reason of the method's own.
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal>;
+
+    /// Judges the patch that is about to be committed. The proposal's costs were right when it was evaluated.
+    fn review(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review;
+
+    /// Follows a commit; `live` already has the patch. Old and new corner positions: [`Patch::before`],
+    /// [`Patch::after`].
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch);
+}
+
+/// Buffers that the evaluations of one thread reuse. They never influence a result.
+#[derive(Debug, Default)]
+pub struct MethodScratch {
+    buffers: Option<Box<dyn Any + Send>>,
+    alone: bool,
+}
+
+impl MethodScratch {
+    /// For evaluations that nothing else runs beside: such an evaluation may use other threads itself.
+    #[must_use]
+    pub fn alone() -> Self {
+        Self {
+            alone: true,
+            ..Self::default()
+        }
     }
 
-    /// Most faces around an edge that may collapse, at most [`RING_LIMIT`]: fewer where evaluations are dear or would be
-    /// refused anyway. Always the same number.
-    fn ring_limit(&self) -> usize {
-        RING_LIMIT
-    }
-
-    /// Called with the patch that is about to be committed: false ends the run at the method's error limit, before
-    /// the limit is exceeded. The proposal may be stale (its costs were right when it was evaluated).
-    fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {
-        let _ = (live, patch, proposal);
-        true
-    }
-
-    /// Called before [`Method::within_limit`] with the patch that is about to be committed: false where the proposal no
-    /// longer holds because of a change that did not touch its ring. The edge is then proposed again.
-    fn confirm(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {
-        let _ = (live, patch, proposal);
-        true
-    }
-
-    /// How many edges that wait under an estimate are evaluated together when the first of them comes to the front, on
-    /// all threads; 1 for methods whose evaluations are too short to be shared.
-    fn looks_ahead(&self) -> usize {
-        1
-    }
-
-    /// Called after every commit; `live` already has the patch. Old and new corner positions:
-    /// [`Patch::before`], [`Patch::after`].
-    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
-        let _ = (live, patch);
-    }
-
-    /// Fewest evaluations of a batch that are worth sharing among threads one by one.
-    fn shared_batch(&self) -> usize {
-        usize::MAX
-    }
-
-    /// How many evaluations are worth a task of their own. Batches of at most this many stay on one thread.
-    fn evaluations_per_task(&self) -> usize {
-        512
+    /// The buffers of type `T`, made by `fresh` the first time; it is told whether evaluations run alone.
+    ///
+    /// # Panics
+    /// Never.
+    pub fn of<T: Any + Send>(&mut self, fresh: impl FnOnce(bool) -> T) -> &mut T {
+        if !self.buffers.as_ref().is_some_and(|b| (**b).is::<T>()) {
+            self.buffers = Some(Box::new(fresh(self.alone)));
+        }
+        let buffers = self.buffers.as_mut().and_then(|b| b.downcast_mut());
+        buffers.expect("of this type since the lines above")
     }
 }

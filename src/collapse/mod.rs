@@ -8,18 +8,17 @@
 mod compact;
 mod counters;
 mod engine;
-mod evaluator;
 mod flip;
 mod fold;
-mod heap;
 mod history;
 mod history_file;
 pub mod legality;
 mod lists;
 mod live;
 mod method;
+mod observer;
 mod patch;
-mod queue;
+mod refusal;
 mod replay;
 mod ring;
 mod star;
@@ -27,17 +26,19 @@ mod tiles;
 pub mod wedge;
 
 pub use counters::Counters;
-pub use engine::{End, Engine, Observer, Target};
+pub use engine::{Engine, Heap, Key, Schedule, Stop};
 pub use flip::{flip, unmirrored};
 pub use fold::{foldedness, is_folded, ring_unfolded, unfolded};
-pub use heap::{Heap, Key};
 pub use history::{Entry, Header, History, Record, Recorder};
-pub use legality::{Refusal, Refusals, Rules, Topology};
+pub use legality::{Rules, Topology};
 pub use live::{Changes, LiveMesh, NONE};
-pub use method::{Admitted, Method, Proposal, Site};
+pub use method::{
+    Admitted, Estimates, Evaluation, Method, MethodScratch, Plan, Proposal, Review, Site,
+};
+pub use observer::Observer;
 pub use patch::{Move, Patch, PatchFace};
-pub use queue::Schedule;
+pub use refusal::{Reason, Refusal, Refusals};
 pub use replay::Replay;
 pub use ring::{Anchor, BoundaryEdge, Ring, RingFace, Spoke};
 pub use star::{Freedom, Star};
-pub use tiles::{Divisible, Tiling, thin};
+pub use tiles::{TileOptions, Tileable, Tiling, collapse_in_tiles};

@@ -17,10 +17,11 @@ pub mod tolerance;
 pub mod view_bounded;
 pub mod visibility;
 
+pub use crate::collapse::Stop;
 /// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
 pub use crate::collapse::{History, Replay};
 pub use image::Comparison;
 pub use options::{Amount, MethodOptions, Options};
-pub use outcome::{Outcome, Phase, Stop};
+pub use outcome::{Outcome, Phase};
 pub use replacement::{NearestTriangle, originals};
 pub use run::{simplify, simplify_guided};

@@ -5,26 +5,9 @@ use serde::Serialize;
 use super::{Comparison, Options, image::PolishCounters, tolerance::Guarantee};
 use crate::{
     bound::correspondence::Correspondence,
-    collapse::{Counters, History, Refusals},
+    collapse::{Counters, History, Stop},
     mesh::Mesh,
 };
-
-/// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "reason")]
-pub enum Stop {
-    /// There are no more triangles than wanted.
-    TargetReached,
-    /// The next collapse would exceed the error that is allowed.
-    ErrorLimit,
-    /// No edge may be collapsed any more.
-    NoLegalCollapse {
-        /// How many of the edges that are left each rule blocks.
-        refusals: Refusals,
-    },
-    /// The input already had no more triangles than wanted; it is returned as it is.
-    TargetAboveInput,
-}
 
 /// One stretch of a run: pre-simplification and the method itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]

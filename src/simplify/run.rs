@@ -1,7 +1,7 @@
 //! From a mesh and options to an outcome.
 
 use super::{
-    MethodOptions, Options, Outcome, Phase, Stop,
+    MethodOptions, Options, Outcome, Phase,
     image::{
         self, Contest, EngineName, ImageDriven, ImageOptions, Limits, Original, PictureScratch,
         Pictures, PolishCounters, Start,
@@ -17,8 +17,8 @@ use crate::{
     Error, Progress, Result,
     bound::correspondence::Correspondence,
     collapse::{
-        Counters, Divisible, End, Engine, LiveMesh, Method, Observer, Patch, Recorder, Target,
-        Tiling, thin,
+        Counters, Engine, LiveMesh, Method, Observer, Patch, Recorder, Stop, TileOptions, Tileable,
+        Tiling, collapse_in_tiles,
     },
     mesh::Mesh,
     parallel,
@@ -94,24 +94,22 @@ fn in_pool(
         }
         return run.finish(Stop::TargetAboveInput);
     }
-    let target = Target { triangles };
-    let end = match &options.method {
+    let stop = match &options.method {
         MethodOptions::Memoryless(own) => {
-            let method = Memoryless::new(&run.live, *own);
-            run.thinned("memoryless", method, Tiling::default(), target)?
-                .0
+            let mut method = Memoryless::new(&run.live, *own);
+            run.in_tiles("memoryless", &mut method, triangles)?
         }
         MethodOptions::Quadric(own) => {
-            let method = QuadricMethod::new(&run.live, own);
-            run.thinned("quadric", method, Tiling::default(), target)?.0
+            let mut method = QuadricMethod::new(&run.live, own);
+            run.in_tiles("quadric", &mut method, triangles)?
         }
         MethodOptions::Image(own) => match own.engine {
-            EngineName::Layers => run.image::<LayerEngine>(own, target)?,
-            EngineName::Buckets => run.image::<BucketEngine>(own, target)?,
+            EngineName::Layers => run.image::<LayerEngine>(own, triangles)?,
+            EngineName::Buckets => run.image::<BucketEngine>(own, triangles)?,
         },
-        MethodOptions::Visibility(own) => run.guided(own, visibility, target)?,
-        MethodOptions::Tolerance(own) => run.within_distance(own, target)?,
-        MethodOptions::ViewBounded(own) => run.view_bounded(own, target)?,
+        MethodOptions::Visibility(own) => run.guided(own, visibility, triangles)?,
+        MethodOptions::Tolerance(own) => run.within_distance(own, triangles)?,
+        MethodOptions::ViewBounded(own) => run.view_bounded(own, triangles)?,
     };
     if options.unfold {
         unfold(
@@ -123,11 +121,7 @@ fn in_pool(
         )?;
     }
     let contest = run.contest.take();
-    let outcome = run.finish(match end {
-        End::TargetReached => Stop::TargetReached,
-        End::ErrorLimit => Stop::ErrorLimit,
-        End::NoLegalCollapse { blocked } => Stop::NoLegalCollapse { refusals: blocked },
-    })?;
+    let outcome = run.finish(stop)?;
     match contest {
         Some(contest) => contest.decide(mesh, outcome, |mesh, options| {
             in_pool(mesh, options, None, progress)
@@ -186,32 +180,34 @@ impl<'a> Run<'a> {
     }
 
     /// Collapses tile by tile while the mesh is large, then as a whole.
-    fn thinned<M: Divisible>(
+    fn in_tiles(
         &mut self,
         name: &'static str,
-        mut method: M,
-        tiling: Tiling,
-        target: Target,
-    ) -> Result<(End, M)> {
-        let before = self.tiles(&mut method, tiling, target)?;
-        self.phase(name, method, target, before)
+        method: &mut dyn Tileable,
+        triangles: usize,
+    ) -> Result<Stop> {
+        let before = self.tiles(method, Tiling::default(), triangles)?;
+        self.phase(name, method, triangles, before)
     }
 
     /// Collapses tile by tile until the mesh is small enough for one queue; what a phase counts on from.
-    fn tiles<M: Divisible>(
+    fn tiles(
         &mut self,
-        method: &mut M,
+        method: &mut dyn Tileable,
         tiling: Tiling,
-        target: Target,
+        triangles: usize,
     ) -> Result<(usize, Counters)> {
         let triangles_in = self.live.triangle_count();
         let mut counters = Counters::default();
-        thin(
+        collapse_in_tiles(
             &mut self.live,
             method,
-            (self.options.rules, self.options.schedule),
-            tiling,
-            target,
+            TileOptions {
+                tiling,
+                rules: self.options.rules,
+                schedule: self.options.schedule,
+                triangles,
+            },
             &mut counters,
             &mut self.recorder,
             self.progress,
@@ -220,19 +216,19 @@ impl<'a> Run<'a> {
     }
 
     /// Collapses under one method until the target or its end; counts on from `before`.
-    fn phase<M: Method>(
+    fn phase(
         &mut self,
         name: &'static str,
-        method: M,
-        target: Target,
+        method: &mut dyn Method,
+        triangles: usize,
         (triangles_in, counters): (usize, Counters),
-    ) -> Result<(End, M)> {
+    ) -> Result<Stop> {
         let live = std::mem::take(&mut self.live);
-        let mut engine = Engine::new(live, method, self.options.rules, self.options.schedule)
+        let mut engine = Engine::new(live, self.options.rules, self.options.schedule)
             .with_counters(counters)
             .with_rank_measured(self.options.measure_rank);
-        let end = engine.run(target, &mut self.recorder, self.progress);
-        let (live, method, counters) = engine.into_parts();
+        let stop = engine.run(method, triangles, &mut self.recorder, self.progress);
+        let (live, counters) = engine.into_parts();
         self.live = live;
         self.phases.push(Phase {
             method: name,
@@ -240,13 +236,13 @@ impl<'a> Run<'a> {
             triangles_out: self.live.triangle_count(),
             counters,
         });
-        Ok((end?, method))
+        stop
     }
 
     /// Lindstrom & Turk 2000: memoryless down to the start of the image-driven part, then by images.
-    fn image<E: Unrender>(&mut self, own: &ImageOptions, target: Target) -> Result<End> {
+    fn image<E: Unrender>(&mut self, own: &ImageOptions, triangles: usize) -> Result<Stop> {
         let own = &ImageOptions {
-            size: own.size.pixels(target.triangles).into(),
+            size: own.size.pixels(triangles).into(),
             ..own.clone()
         };
         let limit = self.options.error_rms;
@@ -265,17 +261,16 @@ impl<'a> Run<'a> {
                 progress,
             )
         };
-        let start = own.start.triangles(target.triangles);
+        let start = own.start.triangles(triangles);
         let mut original = if self.live.triangle_count() > start {
             // A target above the start is reached before pictures take over.
-            let triangles = start.max(target.triangles);
-            let until = Target { triangles };
+            let until = start.max(triangles);
             let mut method = Memoryless::new(&self.live, own.placement);
             let before = self.tiles(&mut method, Tiling::COARSE, until)?;
             // One queue keeps one core busy.
-            let queue = || self.phase("memoryless", method, until, before);
-            let (thinned, drawn) = parallel::join(queue, draw);
-            thinned?;
+            let queue = || self.phase("memoryless", &mut method, until, before);
+            let (collapsed, drawn) = parallel::join(queue, draw);
+            collapsed?;
             drawn?
         } else {
             progress.step("draw", 0, 0)?;
@@ -305,9 +300,9 @@ impl<'a> Run<'a> {
         let sum = method.error().sum() as f64;
         let deviation = original.deviation(&self.live, own.swept_weight);
         let price = deviation.map_or(0.0, |d| d.price(sum));
-        let method = method.with_swept_price(price).with_glance(own.glance);
+        let mut method = method.with_swept_price(price).with_glance(own.glance);
         let before = (self.live.triangle_count(), Counters::default());
-        let (end, method) = self.phase("image", method, target, before)?;
+        let stop = self.phase("image", &mut method, triangles, before)?;
         let mut pictures = method.into_pictures();
         if own.polish.sweeps > 0 {
             // The limit is one for the views that the user was told.
@@ -359,7 +354,7 @@ impl<'a> Run<'a> {
             self.polish = Some(counters);
         }
         self.error_rms = Some(pictures.error().rms());
-        Ok(end)
+        Ok(stop)
     }
 
     /// Zhang & Turk 2002: by a visibility that is at hand, or is measured now.
@@ -367,8 +362,8 @@ impl<'a> Run<'a> {
         &mut self,
         own: &VisibilityOptions,
         visibility: Option<&Visibility>,
-        target: Target,
-    ) -> Result<End> {
+        triangles: usize,
+    ) -> Result<Stop> {
         let measured;
         let visibility = match visibility {
             Some(visibility) => visibility,
@@ -377,37 +372,35 @@ impl<'a> Run<'a> {
                 &measured
             }
         };
-        let method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
+        let mut method = VisibilityMethod::new(&self.live, own, visibility.triangles())?;
         self.v_mesh = Some(visibility.mesh());
-        Ok(self
-            .thinned("visibility", method, Tiling::default(), target)?
-            .0)
+        self.in_tiles("visibility", &mut method, triangles)
     }
 
     /// Cox & Chibelushi 2005: one phase for every local bound.
-    fn within_distance(&mut self, own: &ToleranceOptions, target: Target) -> Result<End> {
+    fn within_distance(&mut self, own: &ToleranceOptions, triangles: usize) -> Result<Stop> {
         self.progress.step("prepare", 0, 0)?;
         let mut method = ToleranceMethod::new(&self.live, *own)?;
         self.guarantee = Some(method.guarantee());
-        let mut end = End::TargetReached;
+        let mut stop = Stop::TargetReached;
         for bound in method.local_bounds() {
             method.set_local_bound(bound);
             let before = (self.live.triangle_count(), Counters::default());
-            (end, method) = self.phase("tolerance", method, target, before)?;
-            if end == End::TargetReached {
+            stop = self.phase("tolerance", &mut method, triangles, before)?;
+            if stop == Stop::TargetReached {
                 break;
             }
         }
-        Ok(end)
+        Ok(stop)
     }
 
     /// Eisemann & Décoret 2007: within an angle for all viewers in a cell.
-    fn view_bounded(&mut self, own: &ViewBoundedOptions, target: Target) -> Result<End> {
-        let method = ViewBounded::new(&self.live, own, self.progress)?;
+    fn view_bounded(&mut self, own: &ViewBoundedOptions, triangles: usize) -> Result<Stop> {
+        let mut method = ViewBounded::new(&self.live, own, self.progress)?;
         let before = (self.live.triangle_count(), Counters::default());
-        let (end, method) = self.phase("view-bounded", method, target, before)?;
+        let stop = self.phase("view-bounded", &mut method, triangles, before)?;
         self.correspondence = Some(method.into_correspondence(&self.live)?);
-        Ok(end)
+        Ok(stop)
     }
 
     fn finish(self, stop: Stop) -> Result<Outcome> {

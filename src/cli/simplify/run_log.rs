@@ -2,18 +2,10 @@
 
 use std::path::Path;
 
-use crate::cli::terminal::Terminal;
 use crate::{
-    collapse::{Refusal, Refusals},
+    cli::terminal::Terminal,
     simplify::{Outcome, Stop},
 };
-
-/// True where a bound on distances or angles stands in the way of a collapse.
-fn by_bound(refusals: &Refusals) -> bool {
-    use Refusal::{Bound, LocalBound, Strays, Uncovers};
-    let bounds = [Bound, LocalBound, Strays, Uncovers];
-    bounds.into_iter().any(|r| refusals.count(r) > 0)
-}
 
 /// Says how it ended, in particular where that is short of the target.
 pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
@@ -87,7 +79,7 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             input.display()
         )),
         Stop::ErrorLimit => terminal.say("stopped at the error limit"),
-        Stop::NoLegalCollapse { refusals } if by_bound(refusals) => {
+        Stop::NoLegalCollapse { refusals } if refusals.by_bound() => {
             terminal.say(&format!(
                 "stopped with {} triangles: every collapse that is left breaks the bound or a rule ({refusals})",
                 outcome.mesh.triangles().len()

@@ -65,9 +65,9 @@ impl ViewSubset {
 /// Differences are sums over pixels of `(y0 - y)^2`, where `y0` and `y` are the sums of the luma of the pixel's
 /// samples, in the reference and in the picture. Sums of integers have no order, so views may be looked at in
 /// parallel.
-pub trait Unrender: Sync + Sized {
+pub trait Unrender: Send + Sync + Sized + 'static {
     /// What one thread needs to evaluate changes.
-    type Scratch: Send + Sync;
+    type Scratch: Send + Sync + 'static;
 
     /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
     /// [`luma_sums`](super::luma_sums)).

@@ -5,7 +5,10 @@ use super::{
     ImageError, PictureScratch, Pictures, Reference,
 };
 use crate::{
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{
+        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
+        Review, Site,
+    },
     num::math::sqrt,
     raster::{Unrender, ViewSubset},
 };
@@ -101,9 +104,11 @@ impl<E: Unrender> ImageDriven<E> {
             }
             _ => seen,
         };
-        let swept = self.swept_price * sqrt(proposal.geometric.max(0.0));
-        let image = image.saturating_add(swept as i64);
-        Ok(Proposal { image, ..proposal })
+        let swept = self.swept_price * sqrt(proposal.secondary.max(0.0));
+        Ok(Proposal {
+            primary: image.saturating_add(swept as i64),
+            ..proposal
+        })
     }
 
     /// The pictures and their distance from the original's.
@@ -120,52 +125,56 @@ impl<E: Unrender> ImageDriven<E> {
 }
 
 impl<E: Unrender> Method for ImageDriven<E> {
-    type Scratch = ImageScratch<E::Scratch>;
-
-    fn scratch(&self) -> Self::Scratch {
-        ImageScratch {
-            pictures: self.pictures.scratch(),
-            patch: Patch::default(),
+    fn plan(&self) -> Plan {
+        Plan {
+            rough_first: self.glance > 1,
+            shared_batch: 2,
+            evaluations_per_task: 16,
+            ..Plan::default()
         }
     }
 
-    fn lone_scratch(&self) -> Self::Scratch {
-        ImageScratch {
-            pictures: self.pictures.lone_scratch(),
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        None
+    }
+
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        let scratch = scratch.of(|alone| ImageScratch {
+            pictures: if alone {
+                self.pictures.lone_scratch()
+            } else {
+                self.pictures.scratch()
+            },
             patch: Patch::default(),
-        }
+        });
+        let glance = match how {
+            Evaluation::Exact => ViewSubset::All,
+            Evaluation::Rough => ViewSubset::EveryNth(self.glance),
+        };
+        self.price(site, glance, scratch)
     }
 
-    fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.price(site, ViewSubset::All, scratch)
-    }
-
-    fn glances(&self) -> bool {
-        self.glance > 1
-    }
-
-    fn glance(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.price(site, ViewSubset::EveryNth(self.glance), scratch)
-    }
-
-    fn within_limit(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
-        let Some(limit) = self.limit else { return true };
+    fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
+        let Some(limit) = self.limit else {
+            return Review::Commit;
+        };
         // The proposal's cost may be stale: ask again.
         let cost = self
             .pictures
             .cost(live, patch, ViewSubset::All, &mut self.scratch);
-        (self.pictures.error().sum() as i64 + cost) as f64 <= limit
+        if (self.pictures.error().sum() as i64 + cost) as f64 <= limit {
+            Review::Commit
+        } else {
+            Review::LimitReached
+        }
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.pictures.commit(live, patch, &mut self.scratch);
-    }
-
-    fn shared_batch(&self) -> usize {
-        2
-    }
-
-    fn evaluations_per_task(&self) -> usize {
-        16
     }
 }

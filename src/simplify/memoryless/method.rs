@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use super::vertex_sums::Fans;
 use crate::{
     collapse::{
-        Admitted, BoundaryEdge, Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Site,
+        Admitted, BoundaryEdge, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch,
+        Plan, Proposal, Refusal, Review, Ring, Site, Tileable,
     },
     geometry::Sym3,
     num::math,
@@ -393,8 +394,8 @@ pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal,
     };
     Ok(Proposal {
         position,
-        image: 0,
-        geometric: objective.cost(site.ring, position.position()),
+        primary: 0,
+        secondary: objective.cost(site.ring, position.position()),
     })
 }
 
@@ -421,20 +422,35 @@ fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Ref
 }
 
 impl Method for Memoryless {
-    type Scratch = ();
+    fn plan(&self) -> Plan {
+        Plan::default()
+    }
 
-    fn scratch(&self) {}
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        Some(self)
+    }
 
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        _: Evaluation,
+        _: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
         propose(site, &self.options)
     }
 
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        self.fans.estimate(live, edge, &self.options)
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.fans.follow(live, patch);
+    }
+}
+
+impl Estimates for Memoryless {
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        self.fans.estimate(live, edge, &self.options)
     }
 
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
@@ -442,12 +458,12 @@ impl Method for Memoryless {
     }
 }
 
-impl Divisible for Memoryless {
-    fn part(&self, part: &LiveMesh, _: &[u32]) -> Self {
-        Self::new(part, self.options)
+impl Tileable for Memoryless {
+    fn part(&self, part: &LiveMesh, _: &[u32]) -> Box<dyn Tileable> {
+        Box::new(Self::new(part, self.options))
     }
 
-    fn unite(&mut self, _: Self, _: &[u32]) {}
+    fn unite(&mut self, _: &dyn Tileable, _: &[u32]) {}
 
     fn relinked(&mut self, live: &LiveMesh) {
         self.fans = Fans::of(live);

@@ -177,7 +177,7 @@ mod tests {
     use super::*;
     use crate::{
         Silent,
-        collapse::{Engine, Observer, Ring, Rules, Schedule, Target},
+        collapse::{Engine, Observer, Ring, Rules, Schedule},
         mesh::{canonical, generate},
         simplify::memoryless::Memoryless,
         view::frame_of,
@@ -241,10 +241,10 @@ mod tests {
             let live = LiveMesh::new(&mesh, frame_of(&mesh));
             let mut witness = Witness(Fans::of(&live));
             let before = compare(&live, &witness.0);
-            let method = Memoryless::new(&live, MemorylessOptions::default());
-            let mut engine = Engine::new(live, method, Rules::default(), Schedule::Eager);
+            let mut method = Memoryless::new(&live, MemorylessOptions::default());
+            let mut engine = Engine::new(live, Rules::default(), Schedule::Eager);
             for triangles in [mesh.triangles().len() / 2, mesh.triangles().len() / 4] {
-                let end = engine.run(Target { triangles }, &mut witness, &Silent);
+                let end = engine.run(&mut method, triangles, &mut witness, &Silent);
                 end.expect("nobody interrupts");
                 compare(engine.live(), &witness.0);
             }

@@ -6,11 +6,16 @@
 //! conditioned; otherwise it is the best point of the edge. Costs: length^2 (unit weights) or length^4 (area
 //! weights), in frame units.
 
+use std::any::Any;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{
+        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
+        Review, Site, Tileable,
+    },
     geometry::Sym3,
     num::math,
 };
@@ -286,26 +291,33 @@ fn mean_edge(live: &LiveMesh) -> f64 {
 }
 
 impl Method for QuadricMethod {
-    type Scratch = ();
+    fn plan(&self) -> Plan {
+        Plan::default()
+    }
 
-    fn scratch(&self) {}
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        Some(self)
+    }
 
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        _: Evaluation,
+        _: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
         let [u, w] = site.ring.ends;
         let sum = self.quadric(u).plus(self.quadric(w));
         let wanted = site.fixed().unwrap_or_else(|| sum.place(site.ring.points));
         let position = site.admit(wanted)?;
         Ok(Proposal {
             position,
-            image: 0,
-            geometric: sum.error(position.position()),
+            primary: 0,
+            secondary: sum.error(position.position()),
         })
     }
 
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        let [u, w] = live.edge(edge)?;
-        let sum = self.quadric(u).plus(self.quadric(w));
-        Some(sum.error(sum.place([live.position(u), live.position(w)])))
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
     }
 
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
@@ -316,16 +328,43 @@ impl Method for QuadricMethod {
     }
 }
 
-impl Divisible for QuadricMethod {
-    fn part(&self, _: &LiveMesh, vertices: &[u32]) -> Self {
+impl Estimates for QuadricMethod {
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let [u, w] = live.edge(edge)?;
+        let sum = self.quadric(u).plus(self.quadric(w));
+        Some(sum.error(sum.place([live.position(u), live.position(w)])))
+    }
+
+    fn may_fall(&self, _: &LiveMesh, _: u32) -> bool {
+        true
+    }
+}
+
+impl QuadricMethod {
+    /// The quadrics of some vertices, under new ids.
+    pub(in crate::simplify) fn part_of(&self, vertices: &[u32]) -> Self {
         Self {
             quadrics: vertices.iter().map(|&v| *self.quadric(v)).collect(),
         }
     }
 
-    fn unite(&mut self, part: Self, vertices: &[u32]) {
-        for (&v, quadric) in vertices.iter().zip(part.quadrics) {
-            self.quadrics[v as usize] = quadric;
+    /// Takes over the quadrics of a part.
+    pub(in crate::simplify) fn take_back(&mut self, part: &Self, vertices: &[u32]) {
+        for (&v, quadric) in vertices.iter().zip(&part.quadrics) {
+            self.quadrics[v as usize] = *quadric;
+        }
+    }
+}
+
+impl Tileable for QuadricMethod {
+    fn part(&self, _: &LiveMesh, vertices: &[u32]) -> Box<dyn Tileable> {
+        Box::new(self.part_of(vertices))
+    }
+
+    fn unite(&mut self, part: &dyn Tileable, vertices: &[u32]) {
+        let part: &dyn Any = part;
+        if let Some(part) = part.downcast_ref() {
+            self.take_back(part, vertices);
         }
     }
 

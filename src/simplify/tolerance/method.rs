@@ -12,7 +12,10 @@ use crate::{
         envelope::{Change, Coverage, Pieces, Reach, Surface, Trial},
         tolerance::{Neighborhood, OldFace, Quadratic, Volume},
     },
-    collapse::{LiveMesh, Method, Patch, Proposal, Refusal, Site, legality},
+    collapse::{
+        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Reason,
+        Refusal, Review, Site, legality,
+    },
     num::math,
 };
 
@@ -30,6 +33,27 @@ const MANY: usize = 32;
 const WORK: usize = 1 << 17;
 /// Edges that are evaluated together. Part of the result's making, not of the result.
 const AHEAD: usize = 32;
+
+/// A new face would be too far from the faces before it.
+const TOO_FAR_AT_ONCE: Refusal = Refusal::Method(&Reason {
+    index: 0,
+    name: "local-bound",
+    is_bound: true,
+});
+
+/// A new face would be too far from the original.
+const TOO_FAR: Refusal = Refusal::Method(&Reason {
+    index: 1,
+    name: "strays",
+    is_bound: true,
+});
+
+/// A part of the original would be too far from the new mesh.
+const UNCOVERED: Refusal = Refusal::Method(&Reason {
+    index: 2,
+    name: "uncovers",
+    is_bound: true,
+});
 
 /// The method on an original.
 #[derive(Clone, Debug)]
@@ -50,7 +74,7 @@ pub struct ToleranceMethod {
 
 /// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
+struct Scratch {
     trial: Trial,
     pieces: Pieces,
     removed: Vec<u32>,
@@ -147,16 +171,16 @@ impl ToleranceMethod {
                 .of(site)
                 .is_some_and(|a| a.keeps(position - a.origin(), self.local))
         {
-            return Err(Refusal::LocalBound);
+            return Err(TOO_FAR_AT_ONCE);
         }
         if !self.surface.reaches(position, self.reach) {
-            return Err(Refusal::Strays);
+            return Err(TOO_FAR);
         }
         if self.coverage.is_some() && !scratch.trial.covers(fan(), self.reach) {
-            return Err(Refusal::Uncovers);
+            return Err(UNCOVERED);
         }
         if !self.surface.holds(fan(), self.reach, &mut scratch.pieces) {
-            return Err(Refusal::Strays);
+            return Err(TOO_FAR);
         }
         Ok(())
     }
@@ -201,13 +225,31 @@ impl Around {
 }
 
 impl Method for ToleranceMethod {
-    type Scratch = Scratch;
-
-    fn scratch(&self) -> Scratch {
-        Scratch::default()
+    fn plan(&self) -> Plan {
+        Plan {
+            // A larger ring than the certificate can tell apart would be refused after all the work.
+            ring_limit: if self.coverage.is_some() {
+                RING_LIMIT
+            } else {
+                legality::RING_LIMIT
+            },
+            look_ahead: AHEAD,
+            shared_batch: 2,
+            ..Plan::default()
+        }
     }
 
-    fn propose(&self, site: &Site<'_>, scratch: &mut Scratch) -> Result<Proposal, Refusal> {
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        self.memoryless.estimates()
+    }
+
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        _: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        let scratch = scratch.of(|_| Scratch::default());
         let objective = Objective::of(site.ring, &self.options.placement);
         if let Some(coverage) = &self.coverage {
             scratch.removed.clear();
@@ -225,8 +267,8 @@ impl Method for ToleranceMethod {
             self.certify(site, position.position(), around, scratch)?;
             Ok(Proposal {
                 position,
-                image: 0,
-                geometric: objective.cost(site.ring, position.position()),
+                primary: 0,
+                secondary: objective.cost(site.ring, position.position()),
             })
         };
         if let Some(fixed) = site.fixed() {
@@ -257,27 +299,10 @@ impl Method for ToleranceMethod {
         Err(refusal)
     }
 
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        self.memoryless.estimate(live, edge)
-    }
-
-    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
-        self.memoryless.may_fall(live, edge)
-    }
-
-    /// A larger ring than the certificate can tell apart would be refused after all the work.
-    fn ring_limit(&self) -> usize {
-        if self.coverage.is_some() {
-            RING_LIMIT
-        } else {
-            legality::RING_LIMIT
-        }
-    }
-
     /// Another collapse may have changed a witness outside the ring: the test is made again, and finds the witnesses.
-    fn confirm(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> bool {
+    fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
         let Some(coverage) = &self.coverage else {
-            return true;
+            return Review::Commit;
         };
         let own = &mut self.own;
         own.removed.clear();
@@ -288,8 +313,15 @@ impl Method for ToleranceMethod {
         coverage.gather(&own.removed, corners, self.reach, &mut own.trial);
         let fan = patch.added.iter().map(|f| patch.after(live, f));
         let (removed, added) = (&own.removed, &own.added);
-        own.trial
-            .assign(removed, added, fan, self.reach, &mut self.change)
+        let reach = self.reach;
+        if own
+            .trial
+            .assign(removed, added, fan, reach, &mut self.change)
+        {
+            Review::Commit
+        } else {
+            Review::Outdated
+        }
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
@@ -297,13 +329,5 @@ impl Method for ToleranceMethod {
             coverage.apply(&self.change);
         }
         self.memoryless.committed(live, patch);
-    }
-
-    fn looks_ahead(&self) -> usize {
-        AHEAD
-    }
-
-    fn shared_batch(&self) -> usize {
-        2
     }
 }

@@ -19,7 +19,10 @@ use crate::{
         correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
         view_cell::ViewCell,
     },
-    collapse::{Admitted, LiveMesh, Method, Patch, PatchFace, Proposal, Refusal, Site},
+    collapse::{
+        Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan,
+        Proposal, Reason, Refusal, Review, Site,
+    },
 };
 
 /// Options of the method.
@@ -78,7 +81,7 @@ pub struct ViewBounded {
 
 /// Buffers of an evaluation.
 #[derive(Debug, Default)]
-pub struct Buffers {
+struct Buffers {
     patch: Patch,
     removed: Vec<Face>,
     added: Vec<Face>,
@@ -153,15 +156,28 @@ impl ViewBounded {
             pieces,
         } = buffers;
         site.patch(to, patch);
-        let fan =
-            lay_out(site.live, patch, self.origin, removed, added).ok_or(Refusal::Unmapped)?;
+        let fan = lay_out(site.live, patch, self.origin, removed, added).ok_or(NO_MAP)?;
         match self.map.allows(&fan, &self.limit, pieces) {
             Answer::Allowed => Ok(()),
-            Answer::Denied => Err(Refusal::Bound),
-            Answer::Tangled => Err(Refusal::Unmapped),
+            Answer::Denied => Err(BOUND_EXCEEDED),
+            Answer::Tangled => Err(NO_MAP),
         }
     }
 }
+
+/// The faces before cannot be mapped onto the faces after: no disc, or folded.
+const NO_MAP: Refusal = Refusal::Method(&Reason {
+    index: 0,
+    name: "unmapped",
+    is_bound: false,
+});
+
+/// A point would be farther from what stands for it than is allowed.
+const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason {
+    index: 1,
+    name: "bound",
+    is_bound: true,
+});
 
 /// Most faces around an edge that may collapse, its own counted at both ends: every piece of the map in them is cut along all of them.
 const RING_LIMIT: usize = 64;
@@ -223,13 +239,24 @@ fn lay_out(
 }
 
 impl Method for ViewBounded {
-    type Scratch = Buffers;
-
-    fn scratch(&self) -> Buffers {
-        Buffers::default()
+    fn plan(&self) -> Plan {
+        Plan {
+            ring_limit: RING_LIMIT,
+            ..Plan::default()
+        }
     }
 
-    fn propose(&self, site: &Site<'_>, buffers: &mut Buffers) -> Result<Proposal, Refusal> {
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        self.placing.estimates()
+    }
+
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        _: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        let buffers = scratch.of(|_| Buffers::default());
         let wanted = memoryless::propose(site, &self.placement)?;
         let mut refusal = match self.bounded(site, wanted.position, buffers) {
             Ok(()) => return Ok(wanted),
@@ -244,13 +271,13 @@ impl Method for ViewBounded {
             .map(|place| (objective.cost(site.ring, place.position()), place))
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (geometric, position) in others {
+        for (cost, position) in others {
             match self.bounded(site, position, buffers) {
                 Ok(()) => {
                     return Ok(Proposal {
                         position,
-                        image: 0,
-                        geometric,
+                        primary: 0,
+                        secondary: cost,
                     });
                 }
                 Err(reason) => refusal = reason,
@@ -259,16 +286,8 @@ impl Method for ViewBounded {
         Err(refusal)
     }
 
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        self.placing.estimate(live, edge)
-    }
-
-    fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool {
-        self.placing.may_fall(live, edge)
-    }
-
-    fn ring_limit(&self) -> usize {
-        RING_LIMIT
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

@@ -8,12 +8,17 @@
 //! Weights belong to the triangles of the input; nothing is measured again during a run. Costs: as those of the
 //! quadric method, in frame units.
 
+use std::any::Any;
+
 use serde::{Deserialize, Serialize};
 
 use super::super::quadric::{QuadricMethod, QuadricOptions};
 use crate::{
     Error, Result,
-    collapse::{Divisible, LiveMesh, Method, Patch, Proposal, Refusal, Site},
+    collapse::{
+        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
+        Review, Site, Tileable,
+    },
     visibility,
 };
 
@@ -95,26 +100,31 @@ impl VisibilityMethod {
 }
 
 impl Method for VisibilityMethod {
-    type Scratch = ();
+    fn plan(&self) -> Plan {
+        Plan::default()
+    }
 
-    fn scratch(&self) {}
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        Some(self)
+    }
 
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
-        let placed = self.placing.propose(site, &mut ())?;
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        let placed = self.placing.propose(site, how, scratch)?;
         let [u, w] = site.ring.ends;
         let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
         Ok(Proposal {
-            geometric: seen.error(placed.position.position()) + self.tie_weight * placed.geometric,
+            secondary: seen.error(placed.position.position()) + self.tie_weight * placed.secondary,
             ..placed
         })
     }
 
-    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
-        let [u, w] = live.edge(edge)?;
-        let sum = self.placing.quadric(u).plus(self.placing.quadric(w));
-        let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
-        let place = sum.place([live.position(u), live.position(w)]);
-        Some(seen.error(place) + self.tie_weight * sum.error(place))
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
@@ -123,18 +133,35 @@ impl Method for VisibilityMethod {
     }
 }
 
-impl Divisible for VisibilityMethod {
-    fn part(&self, live: &LiveMesh, vertices: &[u32]) -> Self {
-        Self {
-            placing: self.placing.part(live, vertices),
-            ordering: self.ordering.part(live, vertices),
-            tie_weight: self.tie_weight,
-        }
+impl Estimates for VisibilityMethod {
+    fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
+        let [u, w] = live.edge(edge)?;
+        let sum = self.placing.quadric(u).plus(self.placing.quadric(w));
+        let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
+        let place = sum.place([live.position(u), live.position(w)]);
+        Some(seen.error(place) + self.tie_weight * sum.error(place))
     }
 
-    fn unite(&mut self, part: Self, vertices: &[u32]) {
-        self.placing.unite(part.placing, vertices);
-        self.ordering.unite(part.ordering, vertices);
+    fn may_fall(&self, _: &LiveMesh, _: u32) -> bool {
+        true
+    }
+}
+
+impl Tileable for VisibilityMethod {
+    fn part(&self, _: &LiveMesh, vertices: &[u32]) -> Box<dyn Tileable> {
+        Box::new(Self {
+            placing: self.placing.part_of(vertices),
+            ordering: self.ordering.part_of(vertices),
+            tie_weight: self.tie_weight,
+        })
+    }
+
+    fn unite(&mut self, part: &dyn Tileable, vertices: &[u32]) {
+        let part: &dyn Any = part;
+        if let Some(part) = part.downcast_ref::<Self>() {
+            self.placing.take_back(&part.placing, vertices);
+            self.ordering.take_back(&part.ordering, vertices);
+        }
     }
 
     fn relinked(&mut self, live: &LiveMesh) {

@@ -6,8 +6,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     collapse::{
-        Changes, End, Engine, Heap, Key, LiveMesh, Method, NONE, Observer, Patch, Proposal,
-        Refusal, Ring, Rules, Schedule, Site, Target, Topology,
+        Changes, Engine, Estimates, Evaluation, Heap, Key, LiveMesh, Method, MethodScratch, NONE,
+        Observer, Patch, Plan, Proposal, Refusal, Review, Ring, Rules, Schedule, Site, Topology,
     },
     mesh::Mesh,
     num::Frame,
@@ -22,74 +22,96 @@ use crate::support::{Random, meshes, same_on_all_threads};
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Method for Dice {
-    type Scratch = ();
+    fn plan(&self) -> Plan {
+        Plan::default()
+    }
 
-    fn scratch(&self) {}
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        None
+    }
 
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        _: Evaluation,
+        _: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
         let [u, w] = site.ring.ends;
         let mut random = Random(self.0 ^ u64::from(u) << 32 ^ u64::from(w));
         let [p, q] = site.ring.points;
         let wanted = site.fixed().unwrap_or_else(|| p + (q - p) * random.unit());
         Ok(Proposal {
             position: site.admit(wanted)?,
-            image: (random.next() % 7) as i64 - 3,
-            geometric: random.unit(),
+            primary: (random.next() % 7) as i64 - 3,
+            secondary: random.unit(),
         })
     }
+
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
+    }
+
+    fn committed(&mut self, _: &LiveMesh, _: &Patch) {}
 }
 
-/// Prices as [`Dice`] does, and glances with an error from a range.
-struct Glancing {
+/// Prices as [`Dice`] does, and roughly with an error from a range.
+struct Rough {
     dice: Dice,
     off: std::ops::Range<i64>,
     /// Collapses whose price was not the dice's.
-    rough: usize,
+    wrong: usize,
 }
 
-impl Glancing {
+impl Rough {
     fn price(&self, [u, w]: [u32; 2]) -> [i64; 2] {
         let mut random = Random(self.dice.0 ^ u64::from(u) << 32 ^ u64::from(w));
         random.unit();
-        let image = (random.next() % 7) as i64 - 3;
+        let price = (random.next() % 7) as i64 - 3;
         let length = self.off.end - self.off.start;
         [
-            image,
+            price,
             self.off.start + (random.next() % length as u64) as i64,
         ]
     }
 }
 
-impl Method for Glancing {
-    type Scratch = ();
-
-    fn scratch(&self) {}
-
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
-        let image = self.price(site.ring.ends)[0];
-        let proposal = self.dice.propose(site, &mut ())?;
-        Ok(Proposal { image, ..proposal })
+impl Method for Rough {
+    fn plan(&self) -> Plan {
+        Plan {
+            rough_first: true,
+            ..Plan::default()
+        }
     }
 
-    fn glances(&self) -> bool {
-        true
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        None
     }
 
-    fn glance(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
-        let [image, off] = self.price(site.ring.ends);
-        let proposal = self.dice.propose(site, &mut ())?;
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        let [price, off] = self.price(site.ring.ends);
+        let proposal = self.dice.propose(site, how, scratch)?;
         Ok(Proposal {
-            image: image + off,
+            primary: match how {
+                Evaluation::Exact => price,
+                Evaluation::Rough => price + off,
+            },
             ..proposal
         })
     }
 
-    fn within_limit(&mut self, _: &LiveMesh, patch: &Patch, proposal: &Proposal) -> bool {
+    fn review(&mut self, _: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review {
         let kept = patch.moved.expect("a collapse moves a vertex").vertex;
         let gone = patch.gone.expect("a collapse removes a vertex");
-        self.rough += usize::from(proposal.image != self.price([kept, gone])[0]);
-        true
+        self.wrong += usize::from(proposal.primary != self.price([kept, gone])[0]);
+        Review::Commit
     }
+
+    fn committed(&mut self, _: &LiveMesh, _: &Patch) {}
 }
 
 type EdgeCounts = BTreeMap<[u32; 2], u32>;
@@ -235,18 +257,19 @@ impl Observer for Witness {
     }
 }
 
-fn run(mesh: &Mesh, seed: u64, topology: Topology, triangles: usize) -> (LiveMesh, End) {
+fn run(mesh: &Mesh, seed: u64, topology: Topology, triangles: usize) -> (LiveMesh, Stop) {
     let live = LiveMesh::new(mesh, frame_of(mesh));
     let rules = Rules {
         topology,
         ..Rules::default()
     };
-    let mut engine = Engine::new(live, Dice(seed), rules, Schedule::Lazy);
+    let mut engine = Engine::new(live, rules, Schedule::Lazy);
     let normals = plain(engine.live())
         .iter()
         .all(|t| unit_normal(t.map(|v| engine.live().position(v))).is_some());
-    let end = engine.run(Target { triangles }, &mut Witness { normals }, &Silent);
-    (engine.into_parts().0, end.expect("nobody interrupts"))
+    let mut witness = Witness { normals };
+    let stop = engine.run(&mut Dice(seed), triangles, &mut witness, &Silent);
+    (engine.into_parts().0, stop.expect("nobody interrupts"))
 }
 
 proptest! {
@@ -312,8 +335,8 @@ proptest! {
         }
         prop_assert_eq!(shuffled.to_mesh().expect("a mesh"), fresh.to_mesh().expect("a mesh"));
         let finish = |live: LiveMesh| {
-            let mut engine = Engine::new(live, Dice(seed), Rules::default(), Schedule::Lazy);
-            engine.run(Target { triangles: 8 }, &mut (), &Silent).expect("nobody interrupts");
+            let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
+            engine.run(&mut Dice(seed), 8, &mut (), &Silent).expect("nobody interrupts");
             engine.into_parts().0.to_mesh().expect("a mesh")
         };
         prop_assert_eq!(finish(shuffled), finish(fresh));
@@ -324,9 +347,9 @@ proptest! {
         operations in prop::collection::vec((0_u8..4, 0_u32..24, -2_i64..3, 0_u8..3), 0..200),
         start in 0_u32..24,
     ) {
-        let key = |id: u32, image: i64, g: u8| Key {
-            image,
-            geometric: [-0.0, 0.0, f64::INFINITY][g as usize],
+        let key = |id: u32, primary: i64, g: u8| Key {
+            primary,
+            secondary: [-0.0, 0.0, f64::INFINITY][g as usize],
             length2: 1.0,
             edge: [id, id + 1],
         };
@@ -379,11 +402,11 @@ fn thread_counts_give_equal_meshes_and_counters() {
 fn an_eager_queue_takes_the_cheapest_edge_every_time() {
     let mesh = meshes::torus(16, 10, 3);
     let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let method = lodmark::simplify::memoryless::Memoryless::default();
-    let engine = Engine::new(live, method, Rules::default(), Schedule::Eager);
+    let mut method = lodmark::simplify::memoryless::Memoryless::default();
+    let engine = Engine::new(live, Rules::default(), Schedule::Eager);
     let mut engine = engine.with_rank_measured(1);
     engine
-        .run(Target { triangles: 60 }, &mut (), &Silent)
+        .run(&mut method, 60, &mut (), &Silent)
         .expect("nobody interrupts");
     let ranks = &engine.counters().ranks;
     assert_eq!(ranks.len() as u64, engine.counters().collapses);
@@ -395,7 +418,7 @@ fn an_eager_queue_takes_the_cheapest_edge_every_time() {
 }
 
 #[test]
-fn no_edge_is_collapsed_at_the_price_of_a_glance_and_cheap_glances_change_no_order() {
+fn no_edge_is_collapsed_at_a_rough_price_and_cheap_rough_prices_change_no_order() {
     let mesh = meshes::torus(16, 10, 3);
     // Folds look beyond the ring, so when an edge is evaluated would matter.
     let rules = Rules {
@@ -405,38 +428,37 @@ fn no_edge_is_collapsed_at_the_price_of_a_glance_and_cheap_glances_change_no_ord
     for seed in 0..20 {
         let run = |off: std::ops::Range<i64>, schedule| {
             let live = LiveMesh::new(&mesh, frame_of(&mesh));
-            let method = Glancing {
+            let mut method = Rough {
                 dice: Dice(seed),
                 off,
-                rough: 0,
+                wrong: 0,
             };
-            let mut engine = Engine::new(live, method, rules, schedule).with_rank_measured(1);
+            let mut engine = Engine::new(live, rules, schedule).with_rank_measured(1);
             engine
-                .run(Target { triangles: 60 }, &mut (), &Silent)
+                .run(&mut method, 60, &mut (), &Silent)
                 .expect("nobody interrupts");
-            let (live, method, counters) = engine.into_parts();
-            assert_eq!(method.rough, 0, "{schedule:?}");
+            let (live, counters) = engine.into_parts();
+            assert_eq!(method.wrong, 0, "{schedule:?}");
             (live.to_mesh().expect("a mesh"), counters)
         };
         let live = LiveMesh::new(&mesh, frame_of(&mesh));
-        let mut engine =
-            Engine::new(live, Dice(seed), rules, Schedule::Eager).with_rank_measured(1);
+        let mut engine = Engine::new(live, rules, Schedule::Eager).with_rank_measured(1);
         engine
-            .run(Target { triangles: 60 }, &mut (), &Silent)
+            .run(&mut Dice(seed), 60, &mut (), &Silent)
             .expect("nobody interrupts");
-        let (exact, _, expected) = engine.into_parts();
+        let (exact, expected) = engine.into_parts();
         let exact = exact.to_mesh().expect("a mesh");
         let (cheap, counters) = run(-4..1, Schedule::Eager);
         assert_eq!(cheap, exact);
         assert_eq!(
             counters.ranks, expected.ranks,
-            "a glance below the price is no reason to overlook an edge"
+            "a rough price below the exact one is no reason to overlook an edge"
         );
         assert_eq!(counters.estimates, counters.evaluations_if_eager);
         assert!(counters.evaluations < counters.estimates / 2);
-        // Any glance will do for the rest, and any schedule.
+        // Any rough price will do for the rest, and any schedule.
         for schedule in [Schedule::Lazy, Schedule::Semi, Schedule::Eager] {
-            run(-4..5, schedule).0;
+            run(-4..5, schedule);
         }
     }
 }
@@ -445,11 +467,10 @@ fn no_edge_is_collapsed_at_the_price_of_a_glance_and_cheap_glances_change_no_ord
 fn a_lazy_queue_evaluates_less_and_ranks_near_the_front() {
     let mesh = meshes::torus(24, 16, 3);
     let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let method = lodmark::simplify::memoryless::Memoryless::default();
-    let mut engine =
-        Engine::new(live, method, Rules::default(), Schedule::Lazy).with_rank_measured(5);
+    let mut method = lodmark::simplify::memoryless::Memoryless::default();
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy).with_rank_measured(5);
     engine
-        .run(Target { triangles: 100 }, &mut (), &Silent)
+        .run(&mut method, 100, &mut (), &Silent)
         .expect("nobody interrupts");
     let counters = engine.counters();
     assert!(counters.evaluations < counters.evaluations_if_eager / 2);
@@ -466,9 +487,9 @@ fn a_locked_vertex_stays_where_it_is() {
         live.set_locked(v, true);
     }
     let places = locked.map(|v| live.position(v));
-    let mut engine = Engine::new(live, Dice(1), Rules::default(), Schedule::Lazy);
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
     engine
-        .run(Target { triangles: 2 }, &mut (), &Silent)
+        .run(&mut Dice(1), 2, &mut (), &Silent)
         .expect("nobody interrupts");
     let left = engine.live().to_mesh().expect("valid");
     let frame = engine.live().frame();
@@ -483,10 +504,10 @@ fn a_tetrahedron_and_a_lone_triangle_are_left_alone() {
     let closed = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     for triangles in [closed, vec![[0, 1, 2]]] {
         let mesh = Mesh::from_triangles(positions.clone(), triangles.clone()).expect("valid");
-        let (live, end) = run(&mesh, 0, Topology::Preserve, 0);
+        let (live, stop) = run(&mesh, 0, Topology::Preserve, 0);
         assert_eq!(plain(&live), triangles);
-        let End::NoLegalCollapse { blocked } = end else {
-            panic!("{end:?}");
+        let Stop::NoLegalCollapse { refusals: blocked } = stop else {
+            panic!("{stop:?}");
         };
         let rule = if triangles.len() == 4 {
             Refusal::Duplicate

@@ -11,8 +11,8 @@ use lodmark::{
     Silent,
     bound::view_cell::ViewCell,
     collapse::{
-        Engine, LiveMesh, Method, Patch, Proposal, Refusal, Ring, RingFace, Rules, Schedule, Site,
-        Target, foldedness,
+        Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal,
+        Refusal, Review, Ring, RingFace, Rules, Schedule, Site, foldedness,
     },
     mesh::{Materials, Mesh, MeshParts, canonical},
     simplify::{
@@ -226,9 +226,9 @@ fn no_fold_around_a_hub_is_missed_or_counted_twice() {
 fn a_hub_of_thousands_loses_its_faces_without_losing_track() {
     let mesh = disc(1_100);
     let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let mut engine = Engine::new(live, Dice(1), Rules::default(), Schedule::Lazy);
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
     for triangles in [1_060, 1_000, 480] {
-        let end = engine.run(Target { triangles }, &mut (), &Silent);
+        let end = engine.run(&mut Dice(1), triangles, &mut (), &Silent);
         end.expect("nobody interrupts");
         assert!(engine.live().triangle_count() <= triangles);
         assert_consistent(engine.live());
@@ -239,29 +239,43 @@ fn a_hub_of_thousands_loses_its_faces_without_losing_track() {
 struct Modest(AtomicUsize);
 
 impl Method for Modest {
-    type Scratch = ();
-
-    fn scratch(&self) {}
-
-    fn ring_limit(&self) -> usize {
-        40
+    fn plan(&self) -> Plan {
+        Plan {
+            ring_limit: 40,
+            ..Plan::default()
+        }
     }
 
-    fn propose(&self, site: &Site<'_>, (): &mut ()) -> Result<Proposal, Refusal> {
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        None
+    }
+
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
         self.0.fetch_max(site.ring.faces.len(), Ordering::Relaxed);
-        Dice(3).propose(site, &mut ())
+        Dice(3).propose(site, how, scratch)
     }
+
+    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
+        Review::Commit
+    }
+
+    fn committed(&mut self, _: &LiveMesh, _: &Patch) {}
 }
 
 #[test]
 fn no_method_is_asked_about_more_faces_than_it_looks_at() {
     let mesh = disc(300);
     let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let method = Modest(AtomicUsize::new(0));
-    let mut engine = Engine::new(live, method, Rules::default(), Schedule::Eager);
-    let end = engine.run(Target { triangles: 10 }, &mut (), &Silent);
-    end.expect("nobody interrupts");
-    let (live, method, counters) = engine.into_parts();
+    let mut method = Modest(AtomicUsize::new(0));
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Eager);
+    let stop = engine.run(&mut method, 10, &mut (), &Silent);
+    stop.expect("nobody interrupts");
+    let (live, counters) = engine.into_parts();
     let most = method.0.into_inner();
     assert!((30..=40).contains(&most), "{most}");
     assert!(counters.refusals.count(Refusal::Valence) > 200);

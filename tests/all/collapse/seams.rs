@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use lodmark::{
     Silent,
-    collapse::{Engine, LiveMesh, Rules, Schedule, Target, Topology},
+    collapse::{Engine, LiveMesh, Rules, Schedule, Topology},
     mesh::{ChannelKind, Mesh},
     simplify::{Amount, Options, Stop, simplify},
     view::frame_of,
@@ -89,8 +89,8 @@ proptest! {
     ) {
         let mesh = meshes::textured_torus(12, 8, seed, flat);
         let live = LiveMesh::new(&mesh, frame_of(&mesh));
-        let mut engine = Engine::new(live, Dice(seed), Rules::default(), Schedule::Lazy);
-        engine.run(Target { triangles: target }, &mut (), &Silent).expect("nobody interrupts");
+        let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
+        engine.run(&mut Dice(seed), target, &mut (), &Silent).expect("nobody interrupts");
         let after = engine.live().to_mesh().expect("valid");
         prop_assert!(after.triangles().len() < 160, "nearly nothing was collapsed");
         prop_assert_eq!(charts(&after), charts(&mesh));
@@ -174,9 +174,9 @@ fn a_value_that_one_end_lacks_is_absent_at_the_new_vertex() {
         topology: Topology::Free,
         ..Rules::default()
     };
-    let mut engine = Engine::new(live, Dice(3), rules, Schedule::Lazy);
+    let mut engine = Engine::new(live, rules, Schedule::Lazy);
     engine
-        .run(Target { triangles: 4 }, &mut (), &Silent)
+        .run(&mut Dice(3), 4, &mut (), &Silent)
         .expect("nobody interrupts");
     let left = engine.live().to_mesh().expect("valid");
     for w in 0..left.attributes().wedge_count() as u32 {

@@ -3,8 +3,8 @@
 use lodmark::{
     Silent,
     collapse::{
-        Counters, Divisible, Engine, History, LiveMesh, Recorder, Replay, Rules, Schedule, Target,
-        Tiling, thin,
+        Counters, Engine, History, LiveMesh, Recorder, Replay, Rules, Schedule, TileOptions,
+        Tileable, Tiling, collapse_in_tiles,
     },
     mesh::{Mesh, canonical},
     simplify::{memoryless::Memoryless, memoryless::MemorylessOptions},
@@ -21,8 +21,17 @@ const SMALL: Tiling = Tiling {
     triangles: 60,
 };
 
+fn down_to(triangles: usize) -> TileOptions {
+    TileOptions {
+        tiling: SMALL,
+        rules: Rules::default(),
+        schedule: Schedule::Eager,
+        triangles,
+    }
+}
+
 /// What a run leaves, and its history; how many collapses it took in tiles.
-fn tiled<M: Divisible>(
+fn tiled<M: Tileable>(
     mesh: &Mesh,
     method: impl Fn(&LiveMesh) -> M,
     triangles: usize,
@@ -32,23 +41,19 @@ fn tiled<M: Divisible>(
     let mut method = method(&live);
     let mut recorder = Recorder::new(mesh, frame);
     let mut counters = Counters::default();
-    let (rules, schedule) = (Rules::default(), Schedule::Eager);
-    let target = Target { triangles };
-    thin(
+    collapse_in_tiles(
         &mut live,
         &mut method,
-        (rules, schedule),
-        SMALL,
-        target,
+        down_to(triangles),
         &mut counters,
         &mut recorder,
         &Silent,
     )
     .expect("nobody interrupts");
     let in_tiles = counters.collapses;
-    let mut engine = Engine::new(live, method, rules, schedule).with_counters(counters);
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Eager).with_counters(counters);
     engine
-        .run(target, &mut recorder, &Silent)
+        .run(&mut method, triangles, &mut recorder, &Silent)
         .expect("nobody interrupts");
     let left = engine.live().to_mesh().expect("valid");
     (left, recorder.finish(String::new()), in_tiles)
@@ -112,14 +117,11 @@ fn a_mesh_with_attributes_locks_or_few_triangles_is_left_alone() {
     live.set_locked(3, true);
     let mut method = Memoryless::new(&live, MemorylessOptions::default());
     let place = live.position(3);
-    let (rules, target) = (Rules::default(), Target { triangles: 20 });
     let mut counters = Counters::default();
-    thin(
+    collapse_in_tiles(
         &mut live,
         &mut method,
-        (rules, Schedule::Eager),
-        SMALL,
-        target,
+        down_to(20),
         &mut counters,
         &mut (),
         &Silent,

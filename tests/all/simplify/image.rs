@@ -4,8 +4,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     collapse::{
-        Engine, LiveMesh, Method, Patch, Proposal, Refusal, Ring, Rules, Schedule, Site, Target,
-        Topology,
+        Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal,
+        Refusal, Review, Ring, Rules, Schedule, Site, Topology,
     },
     mesh::{Mesh, canonical, generate},
     num::math,
@@ -30,19 +30,26 @@ struct Watched {
 }
 
 impl Method for Watched {
-    type Scratch = <ImageDriven<BucketEngine> as Method>::Scratch;
-
-    fn scratch(&self) -> Self::Scratch {
-        self.inner.scratch()
+    fn plan(&self) -> Plan {
+        self.inner.plan()
     }
 
-    fn propose(&self, site: &Site<'_>, scratch: &mut Self::Scratch) -> Result<Proposal, Refusal> {
-        self.inner.propose(site, scratch)
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        self.inner.estimates()
     }
 
-    fn within_limit(&mut self, _: &LiveMesh, _: &Patch, proposal: &Proposal) -> bool {
+    fn propose(
+        &self,
+        site: &Site<'_>,
+        how: Evaluation,
+        scratch: &mut MethodScratch,
+    ) -> Result<Proposal, Refusal> {
+        self.inner.propose(site, how, scratch)
+    }
+
+    fn review(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review {
         self.last = Some(*proposal);
-        true
+        self.inner.review(live, patch, proposal)
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
@@ -219,26 +226,20 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (view_name, set) in view_sets(&sphere) {
             let live = LiveMesh::new(&mesh, frame);
-            let method = method(&original, &live, &set, 0.0);
-            let mut engine = Engine::new(live, method, rules(mesh_name), Schedule::Lazy);
+            let mut method = method(&original, &live, &set, 0.0);
+            let mut engine = Engine::new(live, rules(mesh_name), Schedule::Lazy);
             let mut steps = 0;
             while engine.live().triangle_count() > 4 && steps < 24 {
                 let before = engine.live().triangle_count();
                 engine
-                    .run(
-                        Target {
-                            triangles: before - 1,
-                        },
-                        &mut (),
-                        &Silent,
-                    )
+                    .run(&mut method, before - 1, &mut (), &Silent)
                     .expect("not interrupted");
                 if engine.live().triangle_count() == before {
                     break;
                 }
                 steps += 1;
                 let now = engine.live().to_mesh().expect("valid").enter_frame(frame);
-                let (scene, pictures) = (Scene::of(&now), engine.method().inner.error());
+                let (scene, pictures) = (Scene::of(&now), method.inner.error());
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
@@ -295,8 +296,8 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                     let cost = error(&original, &result, &set) - before;
                     let ends = live.edge(edge).expect("in use");
                     let d = live.position(ends[1]) - live.position(ends[0]);
-                    let charged = cost + (price * math::sqrt(proposal.geometric)) as i64;
-                    let key: Key = (charged, proposal.geometric, d.dot(d), ends);
+                    let charged = cost + (price * math::sqrt(proposal.secondary)) as i64;
+                    let key: Key = (charged, proposal.secondary, d.dot(d), ends);
                     if cheapest.is_none_or(|(least, _)| key < least) {
                         cheapest = Some((key, cost));
                     }
@@ -306,24 +307,17 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 };
                 // (2) What the engine takes first.
                 let triangles = live.triangle_count();
-                let method = method(&original, &live, &set, price);
-                let mut engine =
-                    Engine::new(live.clone(), method, rules(mesh_name), Schedule::Eager);
+                let mut method = method(&original, &live, &set, price);
+                let mut engine = Engine::new(live.clone(), rules(mesh_name), Schedule::Eager);
                 let mut taken = Taken::default();
                 engine
-                    .run(
-                        Target {
-                            triangles: triangles - 1,
-                        },
-                        &mut taken,
-                        &Silent,
-                    )
+                    .run(&mut method, triangles - 1, &mut taken, &Silent)
                     .expect("not interrupted");
-                let proposal = engine.method().last.expect("a collapse");
-                assert_eq!(proposal.image, cheapest.0, "{mesh_name}, {view_name}");
+                let proposal = method.last.expect("a collapse");
+                assert_eq!(proposal.primary, cheapest.0, "{mesh_name}, {view_name}");
                 assert_eq!(taken.0, Some(cheapest.3), "{mesh_name}, {view_name}");
                 assert_eq!(
-                    engine.method().inner.error().sum() as i64 - before,
+                    method.inner.error().sum() as i64 - before,
                     cost,
                     "{mesh_name}, {view_name}"
                 );

@@ -257,7 +257,7 @@ fn a_proposal_is_judged_at_the_position_the_file_can_store() {
     let file = live.frame().leave(p);
     assert_eq!(file, Precision::F32.round_vector(file));
     let cost = Objective::of(&ring, &options).cost(&ring, p);
-    assert_eq!(proposal.geometric.to_bits(), cost.to_bits());
+    assert_eq!(proposal.secondary.to_bits(), cost.to_bits());
 }
 
 #[test]

@@ -8,7 +8,9 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::tolerance::Source,
-    collapse::{Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Ring, Rules, Site},
+    collapse::{
+        Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Review, Ring, Rules, Site,
+    },
     mesh::{Mesh, canonical, content_sha256, generate},
     num::{Frame, Precision},
     simplify::{
@@ -111,8 +113,8 @@ proptest! {
                     most = most.max(after.iter().map(|&t| distance(p, t)).fold(f64::INFINITY, f64::min));
                 }
             }
-            let proposal = Proposal { position, image: 0, geometric: 0.0 };
-            let confirmed = method.confirm(&live, &patch, &proposal);
+            let proposal = Proposal { position, primary: 0, secondary: 0.0 };
+            let confirmed = method.review(&live, &patch, &proposal) == Review::Commit;
             prop_assert!(!confirmed || most <= bound, "{most} of {bound}");
             if confirmed {
                 live.apply(&patch, &mut changes);

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Heap, Key, LiveMesh, Proposal};
+use super::{Heap, Key};
+use crate::collapse::{Evaluation, LiveMesh, Proposal};
 
-/// When an edge whose ring changed is evaluated again, or glanced at where the method glances.
+/// Time at which an edge whose ring changed is evaluated again, roughly where the method's plan says so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Schedule {
@@ -17,21 +18,12 @@ pub enum Schedule {
     Eager,
 }
 
-/// How an edge is evaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Evaluation {
-    /// To the last bit: it may be collapsed.
-    Whole,
-    /// So that it has a place in the queue, where it waits to be evaluated as a whole.
-    Glance,
-}
-
-/// What is looked at for every edge around every collapse; kept apart from the proposals to be small.
+/// State of an edge that is read for every edge around every collapse; kept apart from the proposals to be small.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mark {
     /// The round in which the edge was last marked.
     round: u32,
-    /// Its ring changed since it was evaluated, or it was only glanced at.
+    /// Its ring changed since it was evaluated, or was only rough.
     dirty: bool,
     /// It is in the heap.
     queued: bool,
@@ -44,14 +36,14 @@ struct Mark {
 pub(super) struct Queue {
     heap: Heap,
     marks: Vec<Mark>,
-    /// The last legal proposal of every edge; stale, or that of a glance, where it is marked dirty.
+    /// The last legal proposal of every edge; stale, or rough, where it is marked dirty.
     proposals: Vec<Option<Proposal>>,
     round: u32,
 }
 
-/// What comes to the front.
+/// The edge at the front.
 pub(super) enum Front {
-    /// Its ring changed since it was evaluated, or it was only glanced at.
+    /// Its ring changed since it was evaluated, or was only rough.
     Stale(u32),
     /// The next collapse.
     Ready(u32, Proposal),
@@ -66,7 +58,7 @@ impl Queue {
         estimated: Vec<(u32, f64)>,
     ) -> Self {
         let ids = live.edge_ids() as usize;
-        let glanced = how == Evaluation::Glance;
+        let rough = how == Evaluation::Rough;
         let mut queue = Self {
             marks: vec![Mark::default(); ids],
             proposals: vec![None; ids],
@@ -78,15 +70,15 @@ impl Queue {
                 queue.proposals[id as usize] = Some(proposal);
                 queue.marks[id as usize] = Mark {
                     round: 0,
-                    dirty: glanced,
+                    dirty: rough,
                     queued: true,
-                    estimated: glanced,
+                    estimated: rough,
                 };
                 entries.push((key, id));
             }
         }
-        for (id, geometric) in estimated {
-            if let Some(key) = estimated_key(live, id, geometric) {
+        for (id, cost) in estimated {
+            if let Some(key) = estimated_key(live, id, cost) {
                 queue.marks[id as usize] = Mark {
                     round: 0,
                     dirty: true,
@@ -109,7 +101,7 @@ impl Queue {
         })
     }
 
-    /// Records the outcome of an evaluation, or only of a glance: the edge then waits to be evaluated.
+    /// Records the outcome of an evaluation; after a rough one the edge waits for an exact one.
     pub(super) fn evaluated(
         &mut self,
         live: &LiveMesh,
@@ -119,7 +111,7 @@ impl Queue {
     ) {
         self.grow(id);
         let mark = &mut self.marks[id as usize];
-        mark.dirty = how == Evaluation::Glance;
+        mark.dirty = how == Evaluation::Rough;
         mark.estimated = mark.dirty;
         match proposal.and_then(|p| Some((p, key(live, id, &p)?))) {
             Some((proposal, key)) => {
@@ -184,11 +176,11 @@ impl Queue {
             .collect()
     }
 
-    /// A stale edge costs about `geometric`. Where that is more than it waits under, it goes on waiting there: it is
+    /// A stale edge costs about `cost`. Where that is more than it waits under, it goes on waiting there: it is
     /// estimated again at the front.
-    pub(super) fn expect(&mut self, live: &LiveMesh, id: u32, geometric: f64) {
+    pub(super) fn expect(&mut self, live: &LiveMesh, id: u32, cost: f64) {
         self.grow(id);
-        let Some(key) = estimated_key(live, id, geometric) else {
+        let Some(key) = estimated_key(live, id, cost) else {
             return;
         };
         if !self.marks[id as usize].queued || self.heap.key(id).is_none_or(|old| key < old) {
@@ -196,9 +188,9 @@ impl Queue {
         }
     }
 
-    /// A stale edge at the front costs about `geometric`: it goes where that belongs.
-    pub(super) fn defer(&mut self, live: &LiveMesh, id: u32, geometric: f64) {
-        if let Some(key) = estimated_key(live, id, geometric) {
+    /// A stale edge at the front costs about `cost`: it goes where that belongs.
+    pub(super) fn defer(&mut self, live: &LiveMesh, id: u32, cost: f64) {
+        if let Some(key) = estimated_key(live, id, cost) {
             self.wait(id, key);
         }
     }
@@ -241,17 +233,17 @@ impl Queue {
 /// The key of a proposal for an edge; `None` where the id is not in use.
 pub(super) fn key(live: &LiveMesh, id: u32, proposal: &Proposal) -> Option<Key> {
     Some(Key {
-        image: proposal.image,
-        ..estimated_key(live, id, proposal.geometric)?
+        primary: proposal.primary,
+        ..estimated_key(live, id, proposal.secondary)?
     })
 }
 
-fn estimated_key(live: &LiveMesh, id: u32, geometric: f64) -> Option<Key> {
+fn estimated_key(live: &LiveMesh, id: u32, cost: f64) -> Option<Key> {
     let edge = live.edge(id)?;
     let d = live.position(edge[1]) - live.position(edge[0]);
     Some(Key {
-        image: 0,
-        geometric,
+        primary: 0,
+        secondary: cost,
         length2: d.dot(d),
         edge,
     })

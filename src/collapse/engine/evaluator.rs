@@ -1,56 +1,63 @@
-//! What edges cost, or why they may not collapse: one after the other, or many in parallel.
+//! Evaluation of edges: one after the other, or many in parallel.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{LiveMesh, Method, Proposal, Refusal, Ring, Rules, Site, queue::Evaluation};
-use crate::parallel;
+use crate::{
+    collapse::{Evaluation, LiveMesh, Method, MethodScratch, Proposal, Refusal, Ring, Rules, Site},
+    parallel,
+};
 
 /// Evaluates edges of a mesh that stays as it is meanwhile. Outcomes are in the order of the edges that were asked for,
 /// and depend on no other one.
-#[derive(Debug)]
-pub(super) struct Evaluator<'a, M> {
+pub(super) struct Evaluator<'a> {
     live: &'a LiveMesh,
-    method: &'a M,
+    method: &'a dyn Method,
+    ring_limit: usize,
     rules: Rules,
     how: Evaluation,
 }
 
-/// What an edge costs, or why it may not collapse.
+/// Price of an edge, or the reason why it may not collapse.
 type Outcome = Result<Proposal, Refusal>;
 
-impl<'a, M: Method> Evaluator<'a, M> {
-    pub(super) fn new(live: &'a LiveMesh, method: &'a M, rules: Rules, how: Evaluation) -> Self {
+impl<'a> Evaluator<'a> {
+    pub(super) fn new(
+        live: &'a LiveMesh,
+        method: &'a dyn Method,
+        ring_limit: usize,
+        rules: Rules,
+        how: Evaluation,
+    ) -> Self {
         Self {
             live,
             method,
+            ring_limit,
             rules,
             how,
         }
     }
 
-    /// Evaluates an edge on this thread; the ring is its ring afterwards, where it was looked at.
-    pub(super) fn one(&self, id: u32, ring: &mut Ring, scratch: &mut M::Scratch) -> Outcome {
-        let Self {
-            live, method, how, ..
-        } = self;
+    /// Evaluates an edge on this thread; the ring is its ring afterwards, where it was gathered.
+    pub(super) fn one(&self, id: u32, ring: &mut Ring, scratch: &mut MethodScratch) -> Outcome {
         if self.is_crowded(id) {
             return Err(Refusal::Valence);
         }
-        if !ring.gather(live, id) {
+        if !ring.gather(self.live, id) {
             return Err(Refusal::Unplaced);
         }
-        let site = Site::new(live, ring, self.rules)?;
-        match how {
-            Evaluation::Whole => method.propose(&site, scratch),
-            Evaluation::Glance => method.glance(&site, scratch),
-        }
+        let site = Site::new(self.live, ring, self.rules)?;
+        self.method.propose(&site, self.how, scratch)
     }
 
     /// Evaluates a small batch on all threads: each takes the next edge when it is done with one.
-    pub(super) fn shared(&self, ids: &[u32], pool: &mut Vec<(Ring, M::Scratch)>) -> Vec<Outcome> {
+    pub(super) fn shared(
+        &self,
+        ids: &[u32],
+        pool: &mut Vec<(Ring, MethodScratch)>,
+    ) -> Vec<Outcome> {
         let threads = parallel::threads().min(ids.len());
         while pool.len() < threads {
-            pool.push((Ring::default(), self.method.scratch()));
+            pool.push(Default::default());
         }
         let next = AtomicUsize::new(0);
         let outcomes = parallel::map_mut(&mut pool[..threads], |_, (ring, scratch)| {
@@ -68,14 +75,11 @@ impl<'a, M: Method> Evaluator<'a, M> {
         outcomes.into_iter().map(|(_, outcome)| outcome).collect()
     }
 
-    /// Evaluates many edges in parallel, so many in a task.
-    pub(super) fn all(&self, ids: &[u32], per_task: usize) -> Vec<Outcome>
-    where
-        M: Sync,
-    {
+    /// Evaluates many edges in parallel, `per_task` in a task.
+    pub(super) fn all(&self, ids: &[u32], per_task: usize) -> Vec<Outcome> {
         let per_task = per_task.max(1);
         parallel::collect(ids.len().div_ceil(per_task), 1, |tasks, outcomes| {
-            let (mut ring, mut scratch) = (Ring::default(), self.method.scratch());
+            let (mut ring, mut scratch) = (Ring::default(), MethodScratch::default());
             let ids = &ids[tasks.start * per_task..ids.len().min(tasks.end * per_task)];
             outcomes.reserve_exact(ids.len());
             for &id in ids {
@@ -84,10 +88,10 @@ impl<'a, M: Method> Evaluator<'a, M> {
         })
     }
 
-    /// True where more faces touch an edge than the method looks at; those at both ends count twice.
+    /// True where more faces touch an edge than may; those at both ends count twice.
     fn is_crowded(&self, id: u32) -> bool {
         let valence = |[u, w]: [u32; 2]| self.live.valence(u) + self.live.valence(w);
-        let limit = self.method.ring_limit();
+        let limit = self.ring_limit;
         self.live.edge(id).map(valence).is_some_and(|n| n > limit)
     }
 }

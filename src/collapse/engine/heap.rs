@@ -2,16 +2,15 @@
 
 use std::cmp::Ordering;
 
-use super::NONE;
+use crate::collapse::NONE;
 
-/// What orders the queue: total, and independent of everything but the mesh.
+/// Order of the queue: total, and independent of everything but the mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// Change of the image error, an exact integer, and what the method charges for geometry; 0 for methods without
-    /// images.
-    pub image: i64,
-    /// Geometric cost; integer image costs tie massively.
-    pub geometric: f64,
+    /// First key of the method, an exact integer.
+    pub primary: i64,
+    /// Second key of the method; integers tie massively.
+    pub secondary: f64,
     /// Squared length of the edge; flat areas cost 0.
     pub length2: f64,
     /// The vertices of the edge, the smaller first.
@@ -23,8 +22,8 @@ impl Key {
     #[must_use]
     pub const fn first(edge: [u32; 2]) -> Self {
         Self {
-            image: i64::MIN,
-            geometric: f64::NEG_INFINITY,
+            primary: i64::MIN,
+            secondary: f64::NEG_INFINITY,
             length2: 0.0,
             edge,
         }
@@ -33,9 +32,9 @@ impl Key {
 
 impl Ord for Key {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.image
-            .cmp(&other.image)
-            .then_with(|| self.geometric.total_cmp(&other.geometric))
+        self.primary
+            .cmp(&other.primary)
+            .then_with(|| self.secondary.total_cmp(&other.secondary))
             .then_with(|| self.length2.total_cmp(&other.length2))
             .then_with(|| self.edge.cmp(&other.edge))
     }
