@@ -24,6 +24,9 @@ enum Verb {
         /// Folder for `expected | actual | difference` pictures and mismatches.json; made where something differs
         #[arg(long, value_name = "DIR", default_value = "target/golden")]
         out: PathBuf,
+        /// Compare this group of goldens only; may be given several times [default: all]
+        #[arg(long = "group", value_name = "NAME")]
+        groups: Vec<String>,
     },
     /// Record what this version computes; say in the commit why it should change
     Bless(Place),
@@ -39,10 +42,22 @@ struct Place {
 }
 
 pub(super) fn run(options: &GoldenArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    let items = Group::all(terminal)?;
+    let groups = match &options.verb {
+        Verb::Check { groups, .. } => Group::named(groups)?,
+        Verb::Bless(_) | Verb::List => Group::named(&[])?,
+    };
+    let items = Group::items_of(&groups, terminal)?;
     match &options.verb {
-        Verb::Check { place, out } => {
-            let mismatches = selfcheck::check(&place.dir, &items, out)?;
+        Verb::Check {
+            place,
+            out,
+            groups: named,
+        } => {
+            let mismatches = if named.is_empty() {
+                selfcheck::check(&place.dir, &items, out)?
+            } else {
+                selfcheck::check_groups(&place.dir, &groups, &items, out)?
+            };
             report(
                 common,
                 "golden",

@@ -6,6 +6,7 @@
 pub mod atomic;
 pub mod byte_cursor;
 pub mod bytes;
+mod chart_axis;
 mod font;
 pub mod hash;
 pub mod json;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Collector;
+use super::{Collector, fixtures::bits};
 use crate::{
     Error, Result, Silent,
     bound::{planar::Aperture, view_cell::ViewCell},
@@ -42,8 +42,7 @@ pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
         }
         collector.bytes(&format!("{name}/quads"), &bytes);
         let error = [cloud.displacement.horizontal, cloud.displacement.vertical];
-        let error = error.map(|x| format!("{:016x}", x.to_bits())).join(" ");
-        let counts = format!("{} {} {error}", cloud.quads.len(), cloud.kept.len());
+        let counts = format!("{} {} {}", cloud.quads.len(), cloud.kept.len(), bits(error));
         collector.text(&format!("{name}/counts-displacements"), counts);
         let busiest = cloud.quads.iter().max_by_key(|quad| quad.replaces.len());
         if let Some(quad) = busiest {

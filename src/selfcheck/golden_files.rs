@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{Item, Mismatch, Record};
+use super::{Group, Item, Mismatch, Record};
 use crate::{
     Error, Result,
     encode::{
@@ -39,12 +39,39 @@ pub fn picture_path(folder: &Path, name: &str) -> PathBuf {
 /// # Errors
 /// [`Error::Input`] for a damaged record; [`Error::Io`].
 pub fn check(folder: &Path, items: &[Item], out: &Path) -> Result<Vec<Mismatch>> {
+    check_recorded(folder, recorded(folder)?, items, out)
+}
+
+/// As [`check`], but only the goldens of some groups are asked for.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_groups(
+    folder: &Path,
+    groups: &[&Group],
+    items: &[Item],
+    out: &Path,
+) -> Result<Vec<Mismatch>> {
+    let record = recorded(folder)?.of_groups(groups);
+    check_recorded(folder, record, items, out)
+}
+
+/// Reads the record of a folder; it is empty where there is none.
+fn recorded(folder: &Path) -> Result<Record> {
     let path = folder.join(RECORD_NAME);
-    let record = match fs::read_to_string(&path) {
-        Ok(text) => Record::parse(&text, &path)?,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Record::default(),
-        Err(e) => return Err(Error::io("read", &path, e)),
-    };
+    match fs::read_to_string(&path) {
+        Ok(text) => Record::parse(&text, &path),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(Record::default()),
+        Err(e) => Err(Error::io("read", &path, e)),
+    }
+}
+
+fn check_recorded(
+    folder: &Path,
+    record: Record,
+    items: &[Item],
+    out: &Path,
+) -> Result<Vec<Mismatch>> {
     let mut mismatches = record.compare(items);
     let mut strips = Vec::new();
     for item in items {

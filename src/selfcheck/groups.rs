@@ -2,9 +2,12 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{billboards, bounds, files, hidden, pictures, results, visibility};
+use super::{
+    billboards, compared, hidden_parts, pictures, replayed, simplified, view_cell_bounds,
+    visibility, written_files,
+};
 use crate::{
-    Progress, Result,
+    Error, Progress, Result,
     encode::{
         hash::{Raw, plane_sha256},
         png::Picture,
@@ -20,7 +23,7 @@ pub struct Item {
     pub name: String,
     /// A SHA-256 in hexadecimal digits, or exact integers; one line.
     pub value: String,
-    /// What was hashed, where a person may want to see it.
+    /// The pixels that were hashed, where a person may want to see them.
     pub picture: Option<Picture>,
 }
 
@@ -29,7 +32,7 @@ pub struct Item {
 pub struct Group {
     /// First part of the names of its items.
     pub name: &'static str,
-    /// What the cases are, in a few words.
+    /// The cases in a few words.
     pub about: &'static str,
     run: fn(&mut Collector) -> Result<()>,
 }
@@ -39,17 +42,17 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "generate",
         about: "content of the generated meshes",
-        run: results::generators,
+        run: written_files::generators,
     },
     Group {
         name: "files",
         about: "bytes of written meshes, and meshes read back",
-        run: files::meshes,
+        run: written_files::meshes,
     },
     Group {
         name: "views",
         about: "matrices of every view set, and view files",
-        run: files::views,
+        run: written_files::views,
     },
     Group {
         name: "pictures",
@@ -64,17 +67,17 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "bound",
         about: "what is guaranteed for a view cell",
-        run: bounds::bounds,
+        run: view_cell_bounds::bounds,
     },
     Group {
         name: "simplify",
         about: "simplified meshes of every method",
-        run: results::simplified,
+        run: simplified::simplified,
     },
     Group {
         name: "hidden",
         about: "guided by visibility, and interiors in some views",
-        run: hidden::hidden,
+        run: hidden_parts::hidden,
     },
     Group {
         name: "billboards",
@@ -84,12 +87,12 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "replay",
         about: "middle levels of a recorded run, coarser and finer",
-        run: results::replayed,
+        run: replayed::replayed,
     },
     Group {
         name: "compare",
         about: "squared luma errors, distances, silhouettes",
-        run: results::compared,
+        run: compared::compared,
     },
 ];
 
@@ -97,7 +100,7 @@ impl Group {
     /// Computes the group's items, in a fixed order.
     ///
     /// # Errors
-    /// What the stage under test reports; none is expected.
+    /// The errors of the stage under test; none is expected.
     pub fn items(&self) -> Result<Vec<Item>> {
         let mut collector = Collector {
             group: self.name,
@@ -107,14 +110,38 @@ impl Group {
         Ok(collector.items)
     }
 
+    /// The groups of these names, in the order of [`GROUPS`]; all of them for no name.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where no group has a name.
+    pub fn named(names: &[String]) -> Result<Vec<&'static Self>> {
+        if let Some(name) = names.iter().find(|&n| GROUPS.iter().all(|g| g.name != n)) {
+            let known: Vec<&str> = GROUPS.iter().map(|g| g.name).collect();
+            return Err(Error::Usage(format!(
+                "no group of goldens is called `{name}`; expected one of {}",
+                known.join(", ")
+            )));
+        }
+        let chosen = |g: &&Self| names.is_empty() || names.iter().any(|n| n == g.name);
+        Ok(GROUPS.iter().filter(chosen).collect())
+    }
+
     /// Computes the items of all groups, in the order of [`GROUPS`].
     ///
     /// # Errors
-    /// As [`Group::items`]; [`Error::Interrupted`](crate::Error::Interrupted).
+    /// As [`Group::items`]; [`Error::Interrupted`].
     pub fn all(progress: &dyn Progress) -> Result<Vec<Item>> {
+        Self::items_of(&Self::named(&[])?, progress)
+    }
+
+    /// Computes the items of some groups, in their order.
+    ///
+    /// # Errors
+    /// As [`Group::items`]; [`Error::Interrupted`].
+    pub fn items_of(groups: &[&Self], progress: &dyn Progress) -> Result<Vec<Item>> {
         let mut items = Vec::new();
-        for (i, group) in GROUPS.iter().enumerate() {
-            progress.step("goldens", i as u64, GROUPS.len() as u64)?;
+        for (i, group) in groups.iter().enumerate() {
+            progress.step("goldens", i as u64, groups.len() as u64)?;
             items.extend(group.items()?);
         }
         Ok(items)

@@ -9,16 +9,19 @@
 //! seven seconds in release on one thread, so that slow machines and emulators can run it too.
 
 mod billboards;
-mod bounds;
-mod files;
+mod compared;
+mod fixtures;
 mod golden_files;
 mod groups;
-mod hidden;
+mod hidden_parts;
 mod pictures;
 mod record;
-mod results;
+mod replayed;
+mod simplified;
+mod view_cell_bounds;
 mod visibility;
+mod written_files;
 
-pub use golden_files::{RECORD_NAME, bless, check, picture_path};
+pub use golden_files::{RECORD_NAME, bless, check, check_groups, picture_path};
 pub use groups::{Collector, GROUPS, Group, Item};
 pub use record::{Mismatch, Record};

@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
-use super::{Collector, files::sphere_of};
+use super::{
+    Collector,
+    fixtures::{colored, sphere_of},
+};
 use crate::{
     Error, Result,
     encode::png::Picture,
-    mesh::{Attributes, ChannelKind, Mesh, MeshParts, generate},
+    mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
     view::{
@@ -15,7 +18,7 @@ use crate::{
     },
 };
 
-/// What a case shows to eyes.
+/// The picture of a case for eyes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Show {
     Nothing,
@@ -28,7 +31,7 @@ struct Case {
     name: &'static str,
     mesh: Mesh,
     set: ViewSet,
-    /// What of view 0 is kept as a picture.
+    /// The picture of view 0 that is kept.
     show: Show,
 }
 
@@ -101,26 +104,6 @@ fn crowd(collector: &mut Collector) -> Result<()> {
     Ok(())
 }
 
-/// A mesh with a colour at every vertex that follows its position.
-pub(super) fn colored(mesh: &Mesh) -> Mesh {
-    let mut values = Vec::new();
-    for p in mesh.positions() {
-        // Steps of 1/64 in [0, 1]: exact in every file format.
-        let channel = |x: f64| ((x * 0.25 + 0.5) * 64.0).floor().clamp(0.0, 64.0) / 64.0;
-        values.extend(p.to_array().map(channel));
-    }
-    let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
-        .expect("a row for every vertex");
-    Mesh::new(MeshParts {
-        positions: mesh.positions().to_vec(),
-        triangles: mesh.triangles().to_vec(),
-        attributes,
-        precision: mesh.precision(),
-        ..MeshParts::default()
-    })
-    .expect("the mesh was valid before")
-}
-
 /// The first `count` views of the dodecahedron.
 fn around(mesh: &Mesh, count: usize, size: u32) -> Result<ViewSet> {
     named(mesh, &ViewsName::Dodecahedron, count, size)
@@ -155,26 +138,42 @@ fn lit(mut set: ViewSet, light: Light, two_sided: bool) -> ViewSet {
     set
 }
 
+/// Every case, in the order of the groups below.
 fn cases() -> Result<Vec<Case>> {
+    let mut cases = probe_cases()?;
+    cases.extend(torus_cases()?);
+    cases.extend(placed_cases()?);
+    Ok(cases)
+}
+
+/// A mesh in views that depend on it.
+fn case(
+    name: &'static str,
+    mesh: Mesh,
+    show: Show,
+    set: &dyn Fn(&Mesh) -> Result<ViewSet>,
+) -> Result<Case> {
+    let set = set(&mesh)?;
+    Ok(Case {
+        name,
+        mesh,
+        set,
+        show,
+    })
+}
+
+/// The first three views along the axes, orthographic.
+fn orthographic(mesh: &Mesh) -> Result<ViewSet> {
+    let (name, sphere) = (ViewsName::Octahedron(0), sphere_of(mesh)?);
+    let mut set = view::resolve(&name, &sphere, [80, 64], Projection::Orthographic)?;
+    set.views.truncate(3);
+    Ok(set)
+}
+
+/// Every kind of difficult triangle, by every kind of view set.
+fn probe_cases() -> Result<Vec<Case>> {
     let probe = generate::probe;
-    let torus = || generate::torus(1.0, 0.4, 32, 16);
-    let engine = || generate::engine(1);
     let all = usize::MAX;
-    let orthographic = |mesh: &Mesh| -> Result<ViewSet> {
-        let (name, sphere) = (ViewsName::Octahedron(0), sphere_of(mesh)?);
-        let mut set = view::resolve(&name, &sphere, [80, 64], Projection::Orthographic)?;
-        set.views.truncate(3);
-        Ok(set)
-    };
-    let case = |name, mesh: Mesh, show, set: &dyn Fn(&Mesh) -> Result<ViewSet>| {
-        let set = set(&mesh)?;
-        Ok::<_, Error>(Case {
-            name,
-            mesh,
-            set,
-            show,
-        })
-    };
     Ok(vec![
         case("probe", probe(), Show::Luma, &|m| around(m, all, 96))?,
         case("probe-16-bits", probe(), Show::Nothing, &|m| {
@@ -194,6 +193,14 @@ fn cases() -> Result<Vec<Case>> {
         case("probe-gouraud", probe(), Show::Nothing, &|m| {
             Ok(around(m, 3, 96)?.with_shading(GOURAUD))
         })?,
+    ])
+}
+
+/// Shadings, lights, colours and culling.
+fn torus_cases() -> Result<Vec<Case>> {
+    let torus = || generate::torus(1.0, 0.4, 32, 16);
+    let engine = || generate::engine(1);
+    Ok(vec![
         case("torus-gouraud", torus(), Show::Luma, &|m| {
             Ok(around(m, 2, 96)?.with_shading(GOURAUD))
         })?,
@@ -226,6 +233,14 @@ fn cases() -> Result<Vec<Case>> {
         case("engine-cull-front", engine(), Show::Luma, &|m| {
             Ok(around(m, 2, 96)?.with_cull(Cull::Front))
         })?,
+    ])
+}
+
+/// Eyes at places where clipping has much to do.
+fn placed_cases() -> Result<Vec<Case>> {
+    let probe = generate::probe;
+    let engine = || generate::engine(1);
+    Ok(vec![
         // An eye inside the mesh: the near plane cuts triangles on all sides.
         case("engine-from-inside", engine(), Show::Luma, &|_| {
             from_eye([0.55, 0.3, 0.1], [0.0, 0.1, 0.0], [0.02, 3.0])

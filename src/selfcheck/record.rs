@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt, path::Path};
 
 use serde::Serialize;
 
-use super::Item;
+use super::{Group, Item};
 use crate::{Error, Result};
 
 const HEADER: &str = "\
@@ -135,6 +135,16 @@ impl Record {
         Self {
             values: values.map(|(n, v)| (n.clone(), v.clone())).collect(),
         }
+    }
+
+    /// The goldens of some groups.
+    #[must_use]
+    pub fn of_groups(&self, groups: &[&Group]) -> Self {
+        let mut values = BTreeMap::new();
+        for group in groups {
+            values.extend(self.group(group.name).values);
+        }
+        Self { values }
     }
 
     /// Every golden that the items do not reproduce, every item without a golden, and every golden without an item;

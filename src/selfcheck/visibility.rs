@@ -1,7 +1,10 @@
 //! Cases of visibility: V(t) of closed, open and nested shapes by every rule, parts that add up, and what is seen of
 //! them in colours.
 
-use super::{Collector, files::sphere_of};
+use super::{
+    Collector,
+    fixtures::{bits, sphere_of},
+};
 use crate::{
     Result, Silent,
     encode::png::Picture,
@@ -75,9 +78,8 @@ pub(super) fn measured(collector: &mut Collector) -> Result<()> {
         &MeasureOptions { size: 16, ..small },
         &Silent,
     )?;
-    let bits = steps.iter().flat_map(|s| [s.error, s.mesh]);
-    let bits = bits.map(|x| format!("{:016x}", x.to_bits()));
-    collector.text("convergence", bits.collect::<Vec<_>>().join(" "));
+    let errors = steps.iter().flat_map(|s| [s.error, s.mesh]);
+    collector.text("convergence", bits(errors));
     pictured(collector, &mesh, &survey.finish(&mesh)?)
 }
 
@@ -89,11 +91,10 @@ fn numbers(collector: &mut Collector, name: &str, found: &Visibility) {
         .chain(found.views().iter().flat_map(|n| n.to_le_bytes()))
         .collect();
     collector.bytes(&format!("{name}/triangles"), &bytes);
-    let bits = [found.mesh(), found.never_seen_area()];
-    let bits = bits.map(|x| format!("{:016x}", x.to_bits()));
+    let shares = bits([found.mesh(), found.never_seen_area()]);
     collector.text(
         &format!("{name}/mesh"),
-        format!("{} {}", bits.join(" "), found.never_seen()),
+        format!("{shares} {}", found.never_seen()),
     );
 }
 

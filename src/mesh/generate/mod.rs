@@ -11,6 +11,7 @@ mod encased;
 mod engine;
 mod grid;
 mod motor;
+mod motor_inside;
 mod pcg;
 mod probe;
 mod solids;

@@ -1,6 +1,6 @@
 //! A four-cylinder engine as a CAD program would give it: every part modelled, most of them out of sight.
 //!
-//! What the model "motor" is to Zhang & Turk 2002 (140,113 polygons, V(M) = 0.264): a box with some mechanical parts on
+//! It stands for the model "motor" of Zhang & Turk 2002 (140,113 polygons, V(M) = 0.264): a box with some mechanical parts on
 //! it hides many curved ones. x points along the crankshaft to the front, z up.
 
 use std::f64::consts::TAU;
@@ -9,7 +9,8 @@ use glam::DVec3;
 
 use super::{
     Surface,
-    solids::{cavity, hollow, refined, round_box, turned, wire},
+    motor_inside::add_inner_parts,
+    solids::{cavity, round_box, turned, wire},
 };
 use crate::{mesh::Mesh, num::math};
 
@@ -17,7 +18,7 @@ use crate::{mesh::Mesh, num::math};
 const DETAIL_LIMIT: u32 = 8;
 
 /// Middles of the cylinders along the crankshaft.
-const CYLINDERS: [f64; 4] = [-0.66, -0.22, 0.22, 0.66];
+pub(super) const CYLINDERS: [f64; 4] = [-0.66, -0.22, 0.22, 0.66];
 
 /// A four-cylinder engine, some 2.4 long: block, head cover and oil pan with their walls, manifolds, pulleys, alternator,
 /// starter, filter, plugs and bolts outside; liners, pistons, rods, crankshaft, gears, camshaft, valves, springs and
@@ -30,35 +31,37 @@ pub fn motor(detail: u32) -> Mesh {
     let n = Detail(detail.clamp(1, DETAIL_LIMIT));
     let mut surface = Surface::default();
     housings(&mut surface, n);
-    attachments(&mut surface, n);
+    pulleys(&mut surface, n);
+    fittings(&mut surface, n);
+    plugs_and_bolts(&mut surface, n);
     manifolds(&mut surface, n);
-    bottom_end(&mut surface, n);
-    valve_train(&mut surface, n);
+    add_inner_parts(&mut surface, n);
     surface.into_mesh()
 }
 
-/// How finely to model: 2 for the numbers of segments as they are written below.
+/// Fineness of the model: 2 for the numbers of segments as they are written below.
 #[derive(Clone, Copy)]
-struct Detail(u32);
+pub(super) struct Detail(u32);
 
 impl Detail {
     /// A number of segments.
-    fn of(self, segments: u32) -> u32 {
+    pub(super) fn of(self, segments: u32) -> u32 {
         (segments * self.0).div_ceil(2)
     }
 }
 
 /// Turns the z axis into the x axis, without mirroring.
-fn lengthwise(p: DVec3) -> DVec3 {
+pub(super) fn lengthwise(p: DVec3) -> DVec3 {
     DVec3::new(p.z, p.x, p.y)
 }
 
 /// Turns the z axis into the y axis, without mirroring.
-fn crosswise(p: DVec3) -> DVec3 {
+pub(super) fn crosswise(p: DVec3) -> DVec3 {
     DVec3::new(p.y, p.z, p.x)
 }
 
-fn round(_: f64, _: f64) -> f64 {
+/// A circle.
+pub(super) fn round(_: f64, _: f64) -> f64 {
     1.0
 }
 
@@ -68,7 +71,7 @@ fn hexagon(theta: f64, _: f64) -> f64 {
 }
 
 /// `count` teeth of a height that is a share of the radius.
-fn toothed(count: f64, height: f64) -> impl Fn(f64, f64) -> f64 {
+pub(super) fn toothed(count: f64, height: f64) -> impl Fn(f64, f64) -> f64 {
     move |theta, _| 1.0 + height * math::cos(count * theta)
 }
 
@@ -106,8 +109,8 @@ fn housings(surface: &mut Surface, n: Detail) {
     surface.add(&ridge, |p| p + DVec3::Z * 0.892);
 }
 
-/// What is bolted on.
-fn attachments(surface: &mut Surface, n: Detail) {
+/// Pulleys, alternator and flywheel, at the ends of the shafts.
+fn pulleys(surface: &mut Surface, n: Detail) {
     let groove = |r: f64, w: f64| {
         [
             (0.0, 0.0),
@@ -149,6 +152,10 @@ fn attachments(surface: &mut Surface, n: Detail) {
     ];
     let housing = turned(&flywheel, n.of(28), round);
     surface.add(&housing, |p| lengthwise(p) + DVec3::new(-1.16, 0.0, -0.1));
+}
+
+/// Starter, oil filter and oil cap.
+fn fittings(surface: &mut Surface, n: Detail) {
     let starter = [
         (0.0, 0.0),
         (0.06, 0.0),
@@ -178,6 +185,10 @@ fn attachments(surface: &mut Surface, n: Detail) {
     ];
     let cap = turned(&cap, n.of(16), toothed(8.0, 0.05));
     surface.add(&cap, |p| p + DVec3::new(-0.8, 0.2, 0.872));
+}
+
+/// Plugs in the head cover, and bolts along it and the pan.
+fn plugs_and_bolts(surface: &mut Surface, n: Detail) {
     let plug = [
         (0.0, 0.0),
         (0.035, 0.0),
@@ -239,161 +250,5 @@ fn manifolds(surface: &mut Surface, n: Detail) {
         let collector = turned(&collector, n.of(12), round);
         let (y, z) = (0.43 + reach, 0.3 + drop - 0.085);
         surface.add(&collector, |p| lengthwise(p) + DVec3::new(0.0, side * y, z));
-    }
-}
-
-/// Inside the block: liners, pistons, rods, crankshaft, gears.
-fn bottom_end(surface: &mut Surface, n: Detail) {
-    let liner = hollow([0.152, 0.17], [-0.08, 0.38], n.of(20));
-    let mut piston = vec![(0.0, 0.0), (0.1, 0.0), (0.13, -0.06), (0.146, -0.06)];
-    // Three grooves for rings.
-    for k in 0..3_i32 {
-        let z = 0.01 + 0.025 * f64::from(k);
-        piston.extend([
-            (0.146, z),
-            (0.136, z),
-            (0.136, z + 0.012),
-            (0.146, z + 0.012),
-        ]);
-    }
-    piston.extend([(0.146, 0.1), (0.12, 0.1), (0.08, 0.085), (0.0, 0.08)]);
-    let piston = turned(&piston, n.of(20), round);
-    let pin = turned(
-        &[(0.0, -0.09), (0.02, -0.09), (0.02, 0.09), (0.0, 0.09)],
-        n.of(10),
-        round,
-    );
-    let shank = round_box(DVec3::new(0.012, 0.025, 0.1), 0.01, n.of(2));
-    let journal = |r: f64, l: f64| {
-        let oil = 0.85 * r;
-        let half = 0.5 * l;
-        let profile = [
-            (0.0, -half),
-            (r, -half),
-            (r, -0.1 * l),
-            (oil, 0.0),
-            (r, 0.1 * l),
-            (r, half),
-            (0.0, half),
-        ];
-        turned(&profile, n.of(14), round)
-    };
-    let web = [
-        (0.0, -0.016),
-        (0.085, -0.016),
-        (0.095, 0.0),
-        (0.085, 0.016),
-        (0.0, 0.016),
-    ];
-    // Heavier on the side away from the pin.
-    let web = turned(&web, n.of(18), |theta, _| 1.0 + 0.25 * math::cos(theta));
-    let ear = hollow([0.042, 0.06], [-0.022, 0.022], n.of(14));
-    for (k, x) in CYLINDERS.into_iter().enumerate() {
-        surface.add(&liner, |p| p + DVec3::new(x, 0.0, 0.0));
-        // The outer pistons are up when the inner ones are down.
-        let throw = if k == 0 || k == 3 { 0.07 } else { -0.07 };
-        let top = 0.17 + throw;
-        surface.add(&piston, |p| p + DVec3::new(x, 0.0, top));
-        surface.add(&pin, |p| crosswise(p) + DVec3::new(x, 0.0, top - 0.09));
-        surface.add(&shank, |p| p + DVec3::new(x, 0.0, top - 0.215));
-        let crank = -0.25 + throw;
-        surface.add(&ear, |p| lengthwise(p) + DVec3::new(x, 0.0, crank + 0.02));
-        surface.add(&journal(0.038, 0.09), |p| {
-            lengthwise(p) + DVec3::new(x, 0.0, crank + 0.02)
-        });
-        for side in [-1.0, 1.0] {
-            let turn = if throw > 0.0 { -1.0 } else { 1.0 };
-            surface.add(&web, |p| {
-                DVec3::new(p.z, p.y * -turn, p.x * turn) + DVec3::new(x + 0.07 * side, 0.0, -0.25)
-            });
-        }
-    }
-    for x in [-0.85, -0.44, 0.0, 0.44] {
-        surface.add(&journal(0.05, 0.2), |p| {
-            lengthwise(p) + DVec3::new(x, 0.0, -0.25)
-        });
-    }
-    // Timing gears at the front, oil pump at the back.
-    let disc = |r: f64| {
-        [
-            (0.0, -0.03),
-            (0.5 * r, -0.03),
-            (0.55 * r, -0.015),
-            (r, -0.02),
-            (r, 0.02),
-            (0.55 * r, 0.015),
-            (0.5 * r, 0.03),
-            (0.0, 0.03),
-        ]
-    };
-    for (r, teeth, x, y, z) in [
-        (0.08, 20.0, 0.88, 0.0, -0.28),
-        (0.12, 30.0, 0.88, 0.12, -0.1),
-        (0.12, 30.0, 0.88, -0.12, 0.12),
-        (0.05, 12.0, -0.85, 0.25, -0.3),
-        (0.05, 12.0, -0.85, -0.25, -0.3),
-    ] {
-        let gear = turned(&disc(r), n.of(4 * teeth as u32), toothed(teeth, 0.06));
-        surface.add(&gear, |p| lengthwise(p) + DVec3::new(x, y, z));
-    }
-    // Studs with threads beside the cylinders.
-    let stud = [(0.0, -0.3), (0.02, -0.3), (0.02, 0.37), (0.0, 0.37)];
-    let thread = |theta: f64, z: f64| 1.0 + 0.12 * math::cos(theta - TAU * z / 0.05);
-    let stud = turned(&refined(&stud, n.of(36)), n.of(7), thread);
-    for k in 0..5_i32 {
-        for side in [-1.0, 1.0] {
-            let x = 0.44 * f64::from(k - 2);
-            surface.add(&stud, |p| p + DVec3::new(0.96 * x, 0.28 * side, 0.0));
-        }
-    }
-}
-
-/// Inside the head cover: camshaft, valves, springs.
-fn valve_train(surface: &mut Surface, n: Detail) {
-    let shaft = [(0.0, -0.88), (0.035, -0.88), (0.035, 0.88), (0.0, 0.88)];
-    let lobe = |x: f64| math::cos(TAU * (x / 0.22));
-    let lobed = |theta: f64, x: f64| {
-        // A lobe over every valve, each pair at its own angle.
-        let turn = math::sin(7.0 * x);
-        let on = (2.0 * lobe(x) - 1.0).clamp(0.0, 1.0);
-        1.0 + on * (0.35 + 0.35 * math::cos(theta - TAU * turn))
-    };
-    let shaft = turned(&refined(&shaft, n.of(64)), n.of(12), lobed);
-    surface.add(&shaft, |p| lengthwise(p) + DVec3::new(0.0, 0.0, 0.745));
-    let valve = [
-        (0.0, 0.0),
-        (0.05, 0.0),
-        (0.05, 0.006),
-        (0.02, 0.025),
-        (0.01, 0.04),
-        (0.01, 0.15),
-        (0.0, 0.15),
-    ];
-    let valve = turned(&valve, n.of(12), round);
-    let keeper = [
-        (0.0, 0.0),
-        (0.035, 0.0),
-        (0.035, 0.01),
-        (0.02, 0.018),
-        (0.0, 0.018),
-    ];
-    let keeper = turned(&keeper, n.of(14), round);
-    let turns = 4.5;
-    let steps = n.of(48);
-    let helix: Vec<DVec3> = (0..=steps)
-        .map(|k| {
-            let t = f64::from(k) / f64::from(steps);
-            let angle = TAU * turns * t;
-            DVec3::new(0.03 * math::cos(angle), 0.03 * math::sin(angle), 0.1 * t)
-        })
-        .collect();
-    let spring = wire(&helix, 0.005, n.of(5));
-    for x in CYLINDERS {
-        for (dx, y) in [(-0.09, 0.16), (0.09, 0.16), (-0.09, -0.16), (0.09, -0.16)] {
-            let at = DVec3::new(x + dx, y, 0.54);
-            surface.add(&valve, |p| p + at);
-            surface.add(&spring, |p| p + at + DVec3::Z * 0.045);
-            surface.add(&keeper, |p| p + at + DVec3::Z * 0.153);
-        }
     }
 }

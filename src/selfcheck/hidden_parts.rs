@@ -1,14 +1,12 @@
 //! Cases of what is hidden: simplification guided by visibility, and interiors that some views look into.
 
-use super::{Collector, files::sphere_of, results::outcome_items};
+use super::{
+    Collector,
+    fixtures::{bits, outcome_items, side_by_side},
+};
 use crate::{
-    Error, Result, Silent,
-    encode::{
-        png::Picture,
-        sheet::{Style, Tile, sheet},
-    },
+    Result, Silent,
     mesh::{canonical, generate},
-    raster::{Scene, luma_sums, mean_luma},
     simplify::{
         Amount, MethodOptions, Options, Replay,
         image::{ImageOptions, Preset, Size, Start},
@@ -16,7 +14,7 @@ use crate::{
         simplify,
         visibility::VisibilityOptions,
     },
-    view::{Cull, ViewSet, frame_of},
+    view::Cull,
     visibility,
 };
 
@@ -51,8 +49,8 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
         let options = guided(QuadricOptions::default(), triangles);
         let outcome = simplify(&mesh, &options, &Silent)?;
         outcome_items(collector, &format!("{name}/visibility"), &outcome);
-        let v = outcome.v_mesh.unwrap_or(f64::NAN).to_bits();
-        collector.text(&format!("{name}/v-mesh-bits"), format!("{v:016x}"));
+        let v = outcome.v_mesh.unwrap_or(f64::NAN);
+        collector.text(&format!("{name}/v-mesh-bits"), bits([v]));
         let mut replay = Replay::new(&mesh, &outcome.history)?;
         replay.seek(mesh.triangles().len() * 2 / 3)?;
         let level = replay.live().to_mesh()?;
@@ -85,39 +83,11 @@ fn interiors(collector: &mut Collector) -> Result<()> {
         outcome_items(collector, &name, &outcome);
         meshes.push(outcome.mesh);
     }
-    let frame = frame_of(&mesh);
-    let sphere = sphere_of(&mesh.enter_frame(frame))?;
-    let views = ViewSet {
-        width: 150,
-        height: 150,
-        ..ViewSet::evaluation(&sphere)?
-    };
-    let view = views
-        .views
-        .get(17)
-        .copied()
-        .ok_or_else(|| Error::Internal("24 views".into()))?;
-    let scenes: Vec<Scene> = meshes
-        .iter()
-        .map(|m| Scene::of(&m.enter_frame(frame)))
-        .collect();
-    let mut pictures = Vec::new();
-    for cull in [Cull::None, Cull::Front] {
-        let view = crate::view::View { cull, ..view };
-        let drawn = scenes.iter().map(|s| luma_sums(s, &view, &views));
-        pictures.extend(drawn.map(|sums| mean_luma(&sums, views.samples)));
-    }
-    let tiles: Vec<_> = pictures
-        .iter()
-        .map(|picture| Tile { picture, label: "" })
-        .collect();
-    let style = Style {
-        padding: 0,
-        paper: 128,
-        ..Style::default()
-    };
-    let picture = sheet(&tiles, 4, style)?;
-    collector.plane("interior-views/luma", &picture);
-    collector.shown(Picture::Grey(picture));
-    Ok(())
+    side_by_side(
+        collector,
+        "interior-views/luma",
+        &meshes,
+        &[Cull::None, Cull::Front],
+        150,
+    )
 }

@@ -1,11 +1,14 @@
-//! Cases of what is written: meshes in every encoding, matrices of views, view files.
+//! Cases of meshes and files: generated meshes, meshes in every encoding, matrices of views, view files.
 
-use super::{Collector, pictures::colored};
+use super::{
+    Collector,
+    fixtures::{colored, sphere_of},
+};
 use crate::{
-    Error, Result,
+    Result,
     io::{self, Encoding},
-    mesh::{Mesh, generate},
-    view::{self, Projection, Sphere, ViewSet, ViewsName},
+    mesh::generate,
+    view::{self, Projection, ViewSet, ViewsName},
 };
 
 const ENCODINGS: [(&str, Encoding); 6] = [
@@ -16,6 +19,16 @@ const ENCODINGS: [(&str, Encoding); 6] = [
     ("stl-text", Encoding::StlAscii),
     ("stl-binary", Encoding::StlBinary),
 ];
+
+/// The content of every generated mesh.
+pub(super) fn generators(collector: &mut Collector) -> Result<()> {
+    for &name in generate::NAMES {
+        if let Some(mesh) = generate::by_name(name) {
+            collector.mesh(name, &mesh);
+        }
+    }
+    Ok(())
+}
 
 /// Seams, materials, colours and nothing of it, in every encoding.
 pub(super) fn meshes(collector: &mut Collector) -> Result<()> {
@@ -63,11 +76,6 @@ pub(super) fn views(collector: &mut Collector) -> Result<()> {
     let back = view::file::from_json(&text, "-")?;
     collector.bytes("file/read", &matrices(&back));
     Ok(())
-}
-
-/// The smallest sphere around a mesh.
-pub(super) fn sphere_of(mesh: &Mesh) -> Result<Sphere> {
-    Sphere::of_mesh(mesh).ok_or_else(|| Error::Internal("a golden mesh has no triangles".into()))
 }
 
 fn matrices(set: &ViewSet) -> Vec<u8> {

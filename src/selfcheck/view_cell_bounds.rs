@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Collector;
+use super::{Collector, fixtures::bits};
 use crate::{
     Error, Result, Silent,
     bound::{
@@ -36,14 +36,6 @@ fn cells() -> Result<[(&'static str, ViewCell); 7]> {
         ),
         ("half-space", ViewCell::half_space(a, at(0.1, -1.0, 0.2))?),
     ])
-}
-
-fn bits(numbers: impl IntoIterator<Item = f64>) -> String {
-    let words: Vec<String> = numbers
-        .into_iter()
-        .map(|x| format!("{:016x}", x.to_bits()))
-        .collect();
-    words.join(" ")
 }
 
 /// Everything that is claimed about a view cell.

@@ -1,0 +1,141 @@
+//! Meshes, views and texts that several groups of cases use.
+
+use super::Collector;
+use crate::{
+    Error, Result,
+    encode::{
+        png::Picture,
+        sheet::{Style, Tile, sheet},
+    },
+    mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
+    raster::{Scene, luma_sums, mean_luma},
+    simplify::{Amount, MethodOptions, Options, Outcome, image::ImageOptions},
+    view::{Cull, Sphere, View, ViewSet, frame_of},
+};
+
+/// The smallest sphere around a mesh.
+pub(super) fn sphere_of(mesh: &Mesh) -> Result<Sphere> {
+    Sphere::of_mesh(mesh).ok_or_else(|| Error::Internal("a golden mesh has no triangles".into()))
+}
+
+/// A mesh with a colour at every vertex that follows its position.
+pub(super) fn colored(mesh: &Mesh) -> Mesh {
+    let mut values = Vec::new();
+    for p in mesh.positions() {
+        // Steps of 1/64 in [0, 1]: exact in every file format.
+        let channel = |x: f64| ((x * 0.25 + 0.5) * 64.0).floor().clamp(0.0, 64.0) / 64.0;
+        values.extend(p.to_array().map(channel));
+    }
+    let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
+        .expect("a row for every vertex");
+    Mesh::new(MeshParts {
+        positions: mesh.positions().to_vec(),
+        triangles: mesh.triangles().to_vec(),
+        attributes,
+        precision: mesh.precision(),
+        ..MeshParts::default()
+    })
+    .expect("the mesh was valid before")
+}
+
+/// An open surface with a boundary.
+pub(super) fn terrain() -> Mesh {
+    generate::grid(12, 12, generate::Height::Polynomial)
+}
+
+/// An open surface with a material for each half: the border between them has to stay.
+pub(super) fn two_materials() -> Mesh {
+    let mesh = terrain();
+    let half = |t: &[u32; 3]| u32::from(mesh.positions()[t[0] as usize].x >= 0.0);
+    Mesh::new(MeshParts {
+        positions: mesh.positions().to_vec(),
+        triangles: mesh.triangles().to_vec(),
+        materials: Materials {
+            names: vec!["left".into(), "right".into()],
+            of_triangle: mesh.triangles().iter().map(half).collect(),
+            libraries: Vec::new(),
+        },
+        precision: mesh.precision(),
+        ..MeshParts::default()
+    })
+    .expect("the mesh was valid before")
+}
+
+/// Options of the image method with the schedule of their preset.
+pub(super) fn image(own: &ImageOptions, target: Amount) -> Options {
+    Options {
+        method: MethodOptions::Image(own.clone()),
+        schedule: own.preset.schedule(),
+        ..Options::image(target)
+    }
+}
+
+/// The mesh, how many collapses led to it, and the bits of its error. Not how many evaluations: that is effort.
+pub(super) fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
+    collector.mesh(name, &outcome.mesh);
+    let mut text = format!("{}", outcome.mesh.triangles().len());
+    for phase in &outcome.phases {
+        text += &format!(" {}-{}", phase.method, phase.counters.collapses);
+    }
+    if let Some(rms) = outcome.error_rms {
+        text += &format!(" {}", bits([rms]));
+    }
+    collector.text(&format!("{name}/run"), text);
+}
+
+/// The bits of numbers in hexadecimal digits.
+pub(super) fn bits(numbers: impl IntoIterator<Item = f64>) -> String {
+    let words: Vec<String> = numbers
+        .into_iter()
+        .map(|x| format!("{:016x}", x.to_bits()))
+        .collect();
+    words.join(" ")
+}
+
+/// Records a picture of meshes side by side, a row for every way of culling, from view 17 of the evaluation around the first
+/// mesh.
+pub(super) fn side_by_side(
+    collector: &mut Collector,
+    name: &str,
+    meshes: &[Mesh],
+    culls: &[Cull],
+    size: u32,
+) -> Result<()> {
+    let Some(first) = meshes.first() else {
+        return Ok(());
+    };
+    let frame = frame_of(first);
+    let views = ViewSet {
+        width: size,
+        height: size,
+        ..ViewSet::evaluation(&sphere_of(&first.enter_frame(frame))?)?
+    };
+    let view = *views
+        .views
+        .get(17)
+        .ok_or_else(|| Error::Internal("24 views".into()))?;
+    let scenes: Vec<Scene> = meshes
+        .iter()
+        .map(|m| Scene::of(&m.enter_frame(frame)))
+        .collect();
+    let mut pictures = Vec::new();
+    for &cull in culls {
+        let view = View { cull, ..view };
+        for scene in &scenes {
+            pictures.push(mean_luma(&luma_sums(scene, &view, &views), views.samples));
+        }
+    }
+    let tiles: Vec<_> = pictures
+        .iter()
+        .map(|picture| Tile { picture, label: "" })
+        .collect();
+    let style = Style {
+        padding: 0,
+        paper: 128,
+        ..Style::default()
+    };
+    let picture = sheet(&tiles, meshes.len() as u32, style)?;
+    collector.plane(name, &picture);
+    collector.shown(Picture::Grey(picture));
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! Cases of replay: levels of recorded runs.
+
+use super::{
+    Collector,
+    fixtures::{image, terrain},
+};
+use crate::{
+    Result, Silent,
+    mesh::generate,
+    simplify::{
+        Amount, Options, Replay,
+        image::{ImageOptions, Start},
+        simplify,
+    },
+    view::ViewsName,
+};
+
+/// Levels between the input and the end of a run, reached from both sides.
+pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
+    let own = ImageOptions {
+        views: ViewsName::Octahedron(0),
+        size: 48.into(),
+        start: Start::Triangles(200),
+        ..ImageOptions::default()
+    };
+    let textured = generate::textured_torus(16, 8);
+    for (name, mesh, options) in [
+        (
+            "terrain/image",
+            terrain(),
+            image(&own, Amount::Triangles(150)),
+        ),
+        (
+            "textured-torus/memoryless",
+            textured,
+            Options::memoryless(Amount::Triangles(60)),
+        ),
+    ] {
+        let outcome = simplify(&mesh, &options, &Silent)?;
+        let mut replay = Replay::new(&mesh, &outcome.history)?;
+        for (step, triangles) in [
+            ("coarser", 180),
+            ("end", 1),
+            ("finer", 220),
+            ("input", usize::MAX),
+        ] {
+            replay.seek(triangles)?;
+            let level = replay.live().to_mesh()?;
+            collector.mesh(&format!("{name}/{step}"), &level);
+        }
+    }
+    Ok(())
+}
