@@ -39,17 +39,17 @@ pub fn flip(
     for old in [&f, &g] {
         for new in &patch.added {
             let (before, after) = (patch.before(live, old), patch.after(live, new));
-            legality::turn(before, super::ring::normal(before), after, rules)?;
+            legality::turn(before, super::edge_star::normal(before), after, rules)?;
         }
     }
-    unmirrored(live, patch)
+    check_uv_orientation(live, patch)
 }
 
 /// Tests that no face of a patch changes its orientation in texture space; a face without an area there is free.
 ///
 /// # Errors
 /// [`Refusal::Mirror`].
-pub fn unmirrored(live: &LiveMesh, patch: &Patch) -> Result<(), Refusal> {
+pub fn check_uv_orientation(live: &LiveMesh, patch: &Patch) -> Result<(), Refusal> {
     let rows = live.rows();
     let stride = rows.stride();
     for &channel in rows.channels() {

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, Patch, PatchFace, Refusal, Ring, Rules, ring::normal};
+use super::{EdgeStar, LiveMesh, Patch, PatchFace, Refusal, Rules, edge_star::normal};
 use crate::num::math::sqrt;
 
 /// Tests the edges that a patch, not yet committed, makes or changes.
@@ -15,7 +15,7 @@ use crate::num::math::sqrt;
 ///
 /// # Errors
 /// [`Refusal::Fold`].
-pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refusal> {
+pub fn check_folds(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refusal> {
     if rules.fold_cosine <= -1.0 {
         return Ok(());
     }
@@ -33,7 +33,7 @@ pub fn unfolded(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), Refu
 ///
 /// O(faces * (log faces + valence)), with the smaller valence of a side's ends.
 #[must_use]
-pub fn foldedness(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
+pub fn fold_amount(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
     let sum = |faces, after| {
         let mut sum = 0.0;
         let add = |c: f64| sum += (cosine - c).max(0.0);
@@ -74,32 +74,32 @@ pub fn is_folded(live: &LiveMesh, edge: u32, cosine: f64) -> bool {
     self::cosine(a, b, first == second) < cosine
 }
 
-/// [`unfolded`] of the collapse of a ring's edge to `position`.
+/// [`check_folds`] of the collapse of a star's edge to `position`.
 ///
 /// # Errors
 /// [`Refusal::Fold`].
-pub fn ring_unfolded(
+pub fn check_collapse_folds(
     live: &LiveMesh,
-    ring: &Ring,
+    star: &EdgeStar,
     position: DVec3,
     rules: Rules,
 ) -> Result<(), Refusal> {
     if rules.fold_cosine <= -1.0 {
         return Ok(());
     }
-    let changed = |id: u32| ring.faces.binary_search_by_key(&id, |f| f.id).is_ok();
-    let [u, w] = ring.ends;
-    // Nearly every ring has room on the stack.
+    let changed = |id: u32| star.faces.binary_search_by_key(&id, |f| f.id).is_ok();
+    let [u, w] = star.ends;
+    // Nearly every star has room on the stack.
     let mut few = [Facet::default(); 24];
     let mut many;
-    let facets = if ring.faces.len() <= few.len() {
+    let facets = if star.faces.len() <= few.len() {
         few.as_mut_slice()
     } else {
-        many = vec![Facet::default(); ring.faces.len()];
+        many = vec![Facet::default(); star.faces.len()];
         many.as_mut_slice()
     };
     let mut count = 0;
-    for face in ring.faces.iter().filter(|f| f.survives) {
+    for face in star.faces.iter().filter(|f| f.survives) {
         facets[count] = Facet {
             corners: face.corners.map(|v| if v == w { u } else { v }),
             normal: normal(face.points_after(position)),
@@ -110,13 +110,13 @@ pub fn ring_unfolded(
     if after >= rules.fold_cosine {
         return Ok(());
     }
-    for (facet, face) in facets.iter_mut().zip(&ring.faces) {
+    for (facet, face) in facets.iter_mut().zip(&star.faces) {
         *facet = Facet {
             corners: face.corners,
             normal: face.normal,
         };
     }
-    if after >= sharpest(live, &facets[..ring.faces.len()], changed) {
+    if after >= sharpest(live, &facets[..star.faces.len()], changed) {
         Ok(())
     } else {
         Err(Refusal::Fold)
@@ -263,7 +263,7 @@ mod tests {
     fn moved(live: &LiveMesh, to: DVec3) -> Result<(), Refusal> {
         let mut patch = Patch::default();
         patch.set_move(live, 3, to);
-        unfolded(live, &patch, Rules::default())
+        check_folds(live, &patch, Rules::default())
     }
 
     #[test]
@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn a_collapse_that_would_fold_is_refused_as_its_patch_is() {
-        // A ridge of two slopes; the ring of its top edge, whose collapse is tried all around.
+        // A ridge of two slopes; the star of its top edge, whose collapse is tried all around.
         let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         let positions = vec![
             p(0.0, 0.0, 0.0),
@@ -306,15 +306,19 @@ mod tests {
         ];
         let mesh = Mesh::from_triangles(positions, triangles).expect("valid");
         let live = LiveMesh::new(&mesh, Frame::default());
-        let mut ring = Ring::default();
-        assert!(ring.gather(&live, live.find_edge(0, 1).expect("an edge")));
+        let mut star = EdgeStar::default();
+        assert!(star.gather(&live, live.find_edge(0, 1).expect("an edge")));
         let (mut folds, mut patch) = (0, Patch::default());
         for i in 0..20 {
             for z in [0.0, 0.4, 2.0] {
                 let to = p(f64::from(i) * 0.25 - 2.0, 0.3, z);
-                ring.patch(&live, to, &mut patch);
-                let outcome = ring_unfolded(&live, &ring, to, Rules::default());
-                assert_eq!(outcome, unfolded(&live, &patch, Rules::default()), "{to}");
+                star.patch(&live, to, &mut patch);
+                let outcome = check_collapse_folds(&live, &star, to, Rules::default());
+                assert_eq!(
+                    outcome,
+                    check_folds(&live, &patch, Rules::default()),
+                    "{to}"
+                );
                 folds += usize::from(outcome.is_err());
             }
         }

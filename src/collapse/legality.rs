@@ -10,8 +10,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LiveMesh, Refusal, Ring,
-    ring::{Anchor, normal},
+    EdgeStar, LiveMesh, Refusal,
+    edge_star::{Anchor, normal},
 };
 
 /// Whether collapses may change the topology.
@@ -55,24 +55,24 @@ impl Default for Rules {
 
 /// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
 /// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit. A
-/// method may have a lower one: [`Plan::ring_limit`](super::Plan::ring_limit).
-pub const RING_LIMIT: usize = 512;
+/// method may have a lower one: [`Plan::star_limit`](super::Plan::star_limit).
+pub const STAR_LIMIT: usize = 512;
 
 /// Where the rules that do not depend on the new position allow the new vertex.
 ///
 /// # Errors
 /// The first rule that forbids the collapse altogether.
-pub fn anchor(live: &LiveMesh, ring: &Ring, rules: Rules) -> Result<Anchor, Refusal> {
-    // Where faces are left elsewhere, the ring may vanish as a whole.
-    let everything = live.triangle_count() <= ring.faces.len();
-    if everything && !ring.faces.iter().any(|f| f.survives) {
+pub fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
+    // Where faces are left elsewhere, the star may vanish as a whole.
+    let everything = live.triangle_count() <= star.faces.len();
+    if everything && !star.faces.iter().any(|f| f.survives) {
         return Err(Refusal::LastTriangle);
     }
     if rules.topology == Topology::Preserve {
-        topology(ring)?;
+        topology(star)?;
     }
-    let feature = features(ring, rules)?;
-    let locked = ring.ends.map(|v| live.is_locked(v));
+    let feature = features(star, rules)?;
+    let locked = star.ends.map(|v| live.is_locked(v));
     match (locked, feature) {
         ([false, false], anchor) => Ok(anchor),
         ([true, false], Anchor::Free | Anchor::At(0)) => Ok(Anchor::At(0)),
@@ -81,28 +81,28 @@ pub fn anchor(live: &LiveMesh, ring: &Ring, rules: Rules) -> Result<Anchor, Refu
     }
 }
 
-fn topology(ring: &Ring) -> Result<(), Refusal> {
+fn topology(star: &EdgeStar) -> Result<(), Refusal> {
     let common = |s: &super::Spoke| s.faces[0] > 0 && s.faces[1] > 0;
-    if ring.spokes.iter().any(|s| common(s) && !s.beside) {
+    if star.spokes.iter().any(|s| common(s) && !s.beside) {
         return Err(Refusal::Link);
     }
-    if ring.faces.iter().any(|f| !f.survives && !f.has_both()) {
+    if star.faces.iter().any(|f| !f.survives && !f.has_both()) {
         return Err(Refusal::Duplicate);
     }
     let singular = |count: u32| count != 0 && count != 2;
-    if ring.edge_faces == 2 {
+    if star.edge_faces == 2 {
         // Pinched vertices are found last: the walk around them is the dearest test.
-        let on_graph = |end| ring.singular_degree(end) > 0 || ring.is_pinched(end);
+        let on_graph = |end| star.singular_degree(end) > 0 || star.is_pinched(end);
         if on_graph(0) && on_graph(1) {
             return Err(Refusal::Pinch);
         }
         return Ok(());
     }
     let ear = |s: &super::Spoke| singular(s.faces[0]) && singular(s.faces[1]);
-    if ring.spokes.iter().any(ear) {
+    if star.spokes.iter().any(ear) {
         return Err(Refusal::Ear);
     }
-    let corner = |end| ring.singular_degree(end) != 2 || ring.is_pinched(end);
+    let corner = |end| star.singular_degree(end) != 2 || star.is_pinched(end);
     if corner(0) && corner(1) {
         return Err(Refusal::Corner);
     }
@@ -110,14 +110,14 @@ fn topology(ring: &Ring) -> Result<(), Refusal> {
 }
 
 /// Seams and borders of materials keep their course (notes: section 3.4, rules a to d).
-fn features(ring: &Ring, rules: Rules) -> Result<Anchor, Refusal> {
-    let complex = ring.spokes.iter().any(|s| s.faces[0] > 2 || s.faces[1] > 2);
-    if rules.topology == Topology::Free && (complex || ring.edge_faces > 2) {
+fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
+    let complex = star.spokes.iter().any(|s| s.faces[0] > 2 || s.faces[1] > 2);
+    if rules.topology == Topology::Free && (complex || star.edge_faces > 2) {
         return Ok(Anchor::Free);
     }
-    let degree = ring.feature_degree;
+    let degree = star.feature_degree;
     let corner = degree.map(|d| d != 0 && d != 2);
-    if ring.edge_feature {
+    if star.edge_feature {
         match corner {
             [false, false] => Ok(Anchor::Free),
             [true, false] => Ok(Anchor::At(0)),
@@ -144,8 +144,8 @@ pub const DEGENERATE: f64 = 1e-7;
 ///
 /// # Errors
 /// [`Refusal::Degenerate`] or [`Refusal::Flip`].
-pub fn shape(ring: &Ring, position: DVec3, rules: Rules) -> Result<(), Refusal> {
-    for face in ring.faces.iter().filter(|f| f.survives) {
+pub fn shape(star: &EdgeStar, position: DVec3, rules: Rules) -> Result<(), Refusal> {
+    for face in star.faces.iter().filter(|f| f.survives) {
         turn(face.points, face.normal, face.points_after(position), rules)?;
     }
     Ok(())

@@ -5,9 +5,8 @@ use std::any::Any;
 use glam::DVec3;
 
 use super::{
-    Anchor, LiveMesh, Patch, Refusal, Ring, Rules,
-    legality::{self, RING_LIMIT},
-    ring_unfolded,
+    Anchor, EdgeStar, LiveMesh, Patch, Refusal, Rules, check_collapse_folds,
+    legality::{self, STAR_LIMIT},
 };
 
 /// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
@@ -28,7 +27,7 @@ pub struct Site<'a> {
     /// The mesh.
     pub live: &'a LiveMesh,
     /// What lies around the edge.
-    pub ring: &'a Ring,
+    pub star: &'a EdgeStar,
     /// Where the rules let the new vertex be.
     pub anchor: Anchor,
     /// The rules.
@@ -36,15 +35,15 @@ pub struct Site<'a> {
 }
 
 impl<'a> Site<'a> {
-    /// The site of a ring.
+    /// The site of a star.
     ///
     /// # Errors
     /// The rule that forbids this collapse wherever the new vertex lies.
-    pub fn new(live: &'a LiveMesh, ring: &'a Ring, rules: Rules) -> Result<Self, Refusal> {
+    pub fn new(live: &'a LiveMesh, star: &'a EdgeStar, rules: Rules) -> Result<Self, Refusal> {
         Ok(Self {
             live,
-            ring,
-            anchor: legality::anchor(live, ring, rules)?,
+            star,
+            anchor: legality::anchor(live, star, rules)?,
             rules,
         })
     }
@@ -54,7 +53,7 @@ impl<'a> Site<'a> {
     pub fn fixed(&self) -> Option<DVec3> {
         match self.anchor {
             Anchor::Free => None,
-            Anchor::At(end) => Some(self.ring.points[end]),
+            Anchor::At(end) => Some(self.star.points[end]),
         }
     }
 
@@ -67,14 +66,14 @@ impl<'a> Site<'a> {
         if self.fixed().is_some_and(|p| p != position) {
             return Err(Refusal::Locked);
         }
-        legality::shape(self.ring, position, self.rules)?;
-        ring_unfolded(self.live, self.ring, position, self.rules)?;
+        legality::shape(self.star, position, self.rules)?;
+        check_collapse_folds(self.live, self.star, position, self.rules)?;
         Ok(Admitted(position))
     }
 
     /// Fills `patch` with the collapse to `position`: what to render for this candidate, under its final ids.
     pub fn patch(&self, position: Admitted, patch: &mut Patch) {
-        self.ring.patch(self.live, position.0, patch);
+        self.star.patch(self.live, position.0, patch);
     }
 }
 
@@ -102,9 +101,9 @@ pub enum Evaluation {
 /// Constants by which the engine schedules the evaluations of a method; the same during a whole run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Most faces around an edge that may collapse, at most [`RING_LIMIT`]: fewer where evaluations are dear or would
+    /// Most faces around an edge that may collapse, at most [`STAR_LIMIT`]: fewer where evaluations are dear or would
     /// be refused anyway.
-    pub ring_limit: usize,
+    pub star_limit: usize,
     /// Whether an edge is evaluated roughly before it comes to the front of the queue.
     pub rough_first: bool,
     /// Number of edges that wait under an estimate and are evaluated together, on all threads, when the first of them
@@ -120,7 +119,7 @@ impl Default for Plan {
     /// For short evaluations.
     fn default() -> Self {
         Self {
-            ring_limit: RING_LIMIT,
+            star_limit: STAR_LIMIT,
             rough_first: false,
             look_ahead: 1,
             shared_batch: usize::MAX,
@@ -134,13 +133,13 @@ impl Default for Plan {
 pub enum Review {
     /// Commit it.
     Commit,
-    /// The proposal no longer holds, because of a change that did not touch the edge's ring: evaluate the edge again.
+    /// The proposal no longer holds, because of a change that did not touch the edge's star: evaluate the edge again.
     Outdated,
     /// It would exceed the method's error limit: end the run before it.
     LimitReached,
 }
 
-/// Costs from sums that a method keeps, without a visit to an edge's ring.
+/// Costs from sums that a method keeps, without a visit to an edge's star.
 ///
 /// An edge waits in the queue under its estimate and is proposed only when that comes to the front; so estimates decide
 /// the order in which edges are evaluated, and proposals which are collapsed. Only for methods whose first key is

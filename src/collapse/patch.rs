@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, wedge::Scratch};
+use super::{LiveMesh, wedge::WedgeScratch};
 
 /// A face of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub struct Patch {
     pub gone: Option<u32>,
     /// Rows of values of new wedges, one after the other; the first has the id [`LiveMesh::wedge_count`] had before.
     pub rows: Vec<f64>,
-    pub(super) scratch: Scratch,
+    pub(super) scratch: WedgeScratch,
 }
 
 impl Patch {

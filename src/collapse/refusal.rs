@@ -42,7 +42,7 @@ macro_rules! refusals {
 }
 
 refusals! {
-    /// More than [`RING_LIMIT`](super::legality::RING_LIMIT) faces touch the edge, or than the method looks at.
+    /// More than [`STAR_LIMIT`](super::legality::STAR_LIMIT) faces touch the edge, or than the method looks at.
     Valence => "valence",
     /// Nothing would be left of the mesh.
     LastTriangle => "last-triangle",

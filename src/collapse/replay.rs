@@ -4,7 +4,7 @@
 //! polishes or unfolds does so after its last collapse: its own level is the result, finer ones are as the collapses left
 //! them.
 
-use super::{Changes, Entry, History, LiveMesh, Move, Patch, PatchFace, Record, Ring};
+use super::{Changes, EdgeStar, Entry, History, LiveMesh, Move, Patch, PatchFace, Record};
 use crate::{
     Error, Result,
     mesh::{Mesh, content_digest},
@@ -27,7 +27,7 @@ pub struct Replay<'a> {
     history: &'a History,
     undo: Vec<Undo>,
     faces: Vec<PatchFace>,
-    ring: Ring,
+    star: EdgeStar,
     patch: Patch,
     changes: Changes,
 }
@@ -58,7 +58,7 @@ impl<'a> Replay<'a> {
             history,
             undo: Vec::new(),
             faces: Vec::new(),
-            ring: Ring::default(),
+            star: EdgeStar::default(),
             patch: Patch::default(),
             changes: Changes::default(),
         })
@@ -163,8 +163,8 @@ impl<'a> Replay<'a> {
                 let edge = known(gone).then(|| live.find_edge(keep, gone)).flatten();
                 let edge =
                     edge.ok_or_else(|| format!("collapses ({keep}, {gone}), which is no edge"))?;
-                self.ring.gather(live, edge);
-                self.ring.patch(live, rounded(to)?, &mut self.patch);
+                self.star.gather(live, edge);
+                self.star.patch(live, rounded(to)?, &mut self.patch);
                 keep
             }
             Record::Move { vertex, to } => {

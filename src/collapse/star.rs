@@ -12,9 +12,9 @@ use glam::DVec3;
 
 use super::{
     LiveMesh, Patch, PatchFace, Refusal, Rules,
-    legality::{self, RING_LIMIT},
-    ring::normal,
-    wedge,
+    edge_star::normal,
+    legality::{self, STAR_LIMIT},
+    pinch, wedge,
 };
 use crate::{mesh::ChannelKind, num::math};
 
@@ -61,7 +61,7 @@ impl Star {
         self.neighbors.clear();
         self.freedom = Freedom::Fixed;
         let valence = live.valence(vertex);
-        if valence == 0 || valence > RING_LIMIT || live.is_locked(vertex) {
+        if valence == 0 || valence > STAR_LIMIT || live.is_locked(vertex) {
             return;
         }
         let faces = live.triangles_at(vertex).map(|id| live.patch_face(id));
@@ -138,25 +138,12 @@ impl Star {
     }
 
     /// True where the faces do not hang together through edges: two sheets that touch in a point.
-    fn is_pinched(&mut self) -> bool {
-        // Faces that are reached from the first one come first.
-        let faces = &mut self.faces;
-        let (mut reached, mut next) = (1, 0);
-        while next < reached {
-            let mut i = reached;
-            while i < faces.len() {
-                let shares = |v: &u32| *v != self.vertex && faces[next].corners.contains(v);
-                if faces[i].corners.iter().any(shares) {
-                    faces.swap(reached, i);
-                    reached += 1;
-                }
-                i += 1;
-            }
-            next += 1;
-        }
-        let pinched = reached < faces.len();
-        faces.sort_unstable_by_key(|f| f.id);
-        pinched
+    fn is_pinched(&self) -> bool {
+        pinch::is_pinched(self.faces.iter().map(|f| {
+            let apex = f.corners.iter().position(|&v| v == self.vertex);
+            let apex = apex.unwrap_or(0);
+            [f.corners[(apex + 1) % 3], f.corners[(apex + 2) % 3]]
+        }))
     }
 
     fn is_on_feature(&self, live: &LiveMesh) -> bool {

@@ -1,14 +1,16 @@
 //! Attributes of the new vertex: which corners share a wedge, and its values.
 //!
 //! Algorithm (seams of Lindstrom & Turk 2000, section 3.3, by classes of corners), for each channel by itself so that
-//! a normal discontinuity does not tear texture coordinates: corners of the ring at one end with equal values are one
+//! a normal discontinuity does not tear texture coordinates: corners of the star at one end with equal values are one
 //! class; a face that holds both ends unites the classes of its two corners; every class gets one value. The value is
 //! interpolated along the edge at the foot of the new position, clamped to the edge; at an end it is exactly that
 //! end's. Normals are made unit again. A value that either end lacks is absent.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
-use super::{LiveMesh, Patch, Ring, RingFace};
+use super::{EdgeStar, LiveMesh, Patch, StarFace, pinch::Forest};
 use crate::{
     mesh::{Attributes, Channel, ChannelKind},
     num::{Precision, math},
@@ -39,7 +41,7 @@ impl WedgeRows {
         &self.channels
     }
 
-    /// What the channels mean.
+    /// The meanings of the channels.
     #[must_use]
     pub fn kinds(&self) -> Vec<ChannelKind> {
         self.channels.iter().map(|c| c.kind).collect()
@@ -98,16 +100,16 @@ pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
 }
 
-/// True where attributes or materials differ between the ring's faces at the edge `ends`, or its texture is mirrored
-/// there; `faces` has at least those of the ring at that edge, in its order.
+/// True where attributes or materials differ between the star's faces at the edge `ends`, or its texture is mirrored
+/// there; `faces` has at least those of the star at that edge, in its order.
 #[must_use]
 pub(super) fn is_feature<'a>(
     live: &LiveMesh,
-    faces: impl Iterator<Item = &'a RingFace>,
+    faces: impl Iterator<Item = &'a StarFace>,
     ends: [u32; 2],
 ) -> bool {
-    let corner = |f: &RingFace, v: u32| f.corners.iter().position(|&c| c == v);
-    let at_edge = |f: &RingFace| Some([corner(f, ends[0])?, corner(f, ends[1])?]);
+    let corner = |f: &StarFace, v: u32| f.corners.iter().position(|&c| c == v);
+    let at_edge = |f: &StarFace| Some([corner(f, ends[0])?, corner(f, ends[1])?]);
     let mut at = faces.filter_map(|f| Some((f, at_edge(f)?)));
     let Some((first, first_at)) = at.next() else {
         return false;
@@ -159,7 +161,7 @@ pub fn texture_area(rows: &WedgeRows, channel: Channel, wedges: [u32; 3]) -> f64
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// A corner of the ring at one end of its edge.
+/// A corner of the star at one end of its edge.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     face: usize,
@@ -168,29 +170,41 @@ struct Corner {
     class: usize,
 }
 
+/// Corners that are compared pair by pair; more are sorted, so that those around a hub do not cost their square.
+const FEW: usize = 48;
+
 /// Buffers of [`transfer`]; all are equal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct WedgeScratch {
     corners: Vec<Corner>,
     values: Vec<f64>,
+    /// For every class, the first wedge of a corner at either end of the edge.
+    firsts: Vec<[Option<u32>; 2]>,
+    /// The new rows, by their values.
+    order: Vec<u32>,
 }
 
-impl PartialEq for Scratch {
+impl PartialEq for WedgeScratch {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
 /// Gives the new vertex its wedges in `patch.added` and appends their rows to `patch.rows`.
-pub(super) fn transfer(live: &LiveMesh, ring: &Ring, position: DVec3, patch: &mut Patch) {
+pub(super) fn transfer(live: &LiveMesh, star: &EdgeStar, position: DVec3, patch: &mut Patch) {
     let rows = live.rows();
     if rows.stride == 0 {
         return;
     }
     let mut scratch = std::mem::take(&mut patch.scratch);
-    let Scratch { corners, values } = &mut scratch;
+    let WedgeScratch {
+        corners,
+        values,
+        firsts,
+        order,
+    } = &mut scratch;
     corners.clear();
-    for (face, f) in ring.faces.iter().enumerate() {
+    for (face, f) in star.faces.iter().enumerate() {
         let wedges = live.wedges(f.id);
         for end in 0..2 {
             if f.at[end] < 3 {
@@ -205,27 +219,28 @@ pub(super) fn transfer(live: &LiveMesh, ring: &Ring, position: DVec3, patch: &mu
     }
     values.clear();
     values.resize(corners.len() * rows.stride, 0.0);
-    let t = foot(ring, position);
+    let t = foot(star, position);
     for &channel in &rows.channels {
         classify(rows, channel, corners);
-        for i in 0..corners.len() {
-            let from = |end: usize| {
-                let mut members = corners.iter();
-                members
-                    .find(|c| c.class == corners[i].class && c.end == end)
-                    .map(|c| rows.value(channel, c.wedge))
-            };
+        firsts.clear();
+        firsts.resize(corners.len(), [None; 2]);
+        for corner in corners.iter() {
+            firsts[corner.class][corner.end].get_or_insert(corner.wedge);
+        }
+        for (i, corner) in corners.iter().enumerate() {
+            let ends = firsts[corner.class].map(|first| first.map(|w| rows.value(channel, w)));
             let into = &mut values[i * rows.stride + channel.offset..][..channel.kind.width()];
-            match (from(0), from(1)) {
-                (Some(a), Some(b)) => interpolate(channel.kind, live.precision(), a, b, t, into),
-                (Some(a), None) | (None, Some(a)) => into.copy_from_slice(a),
-                (None, None) => {}
+            match ends {
+                [Some(a), Some(b)] => interpolate(channel.kind, live.precision(), a, b, t, into),
+                [Some(a), None] | [None, Some(a)] => into.copy_from_slice(a),
+                [None, None] => {}
             }
         }
     }
+    order.clear();
     let mut added = 0;
     for (i, corner) in corners.iter().enumerate() {
-        let face = &ring.faces[corner.face];
+        let face = &star.faces[corner.face];
         if !face.survives {
             continue;
         }
@@ -236,21 +251,40 @@ pub(super) fn transfer(live: &LiveMesh, ring: &Ring, position: DVec3, patch: &mu
         let id = if same_bits(row, rows.row(corner.wedge)) {
             corner.wedge
         } else {
-            let end = patch.rows.len() / rows.stride;
-            let mut known = patch.rows.chunks_exact(rows.stride);
-            let at = known.position(|r| same_bits(r, row)).unwrap_or(end);
-            if at == end {
-                patch.rows.extend_from_slice(row);
-            }
-            rows.count() + at as u32
+            rows.count() + appended(row, &mut patch.rows, order)
         };
         patch.added[added].wedges[face.apex()] = id;
     }
     patch.scratch = scratch;
 }
 
+/// The number of a row among those of a patch, to which it is appended where it is new. `order` has the known ones by
+/// their values.
+fn appended(row: &[f64], rows: &mut Vec<f64>, order: &mut Vec<u32>) -> u32 {
+    let stride = row.len();
+    let known = |&r: &u32| compare_bits(&rows[r as usize * stride..][..stride], row);
+    match order.binary_search_by(known) {
+        Ok(at) => order[at],
+        Err(at) => {
+            let new = order.len() as u32;
+            rows.extend_from_slice(row);
+            order.insert(at, new);
+            new
+        }
+    }
+}
+
+fn compare_bits(a: &[f64], b: &[f64]) -> Ordering {
+    a.iter()
+        .map(|x| x.to_bits())
+        .cmp(b.iter().map(|x| x.to_bits()))
+}
+
 /// Numbers the classes of corners in one channel: a class is the index of its first corner.
 fn classify(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
+    if corners.len() > FEW {
+        return classify_many(rows, channel, corners);
+    }
     for (i, corner) in corners.iter_mut().enumerate() {
         corner.class = i;
     }
@@ -272,9 +306,34 @@ fn classify(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
     }
 }
 
-/// Where the foot of `position` on the edge lies: 0 at its first end, 1 at its second.
-fn foot(ring: &Ring, position: DVec3) -> f64 {
-    let [u, w] = ring.points;
+/// [`classify`] by sorting; corners of one face are neighbours.
+fn classify_many(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
+    let value = |i: usize| rows.value(channel, corners[i].wedge);
+    let compare = |&i: &usize, &j: &usize| {
+        let ends = corners[i].end.cmp(&corners[j].end);
+        ends.then_with(|| compare_bits(value(i), value(j)))
+    };
+    let mut order: Vec<usize> = (0..corners.len()).collect();
+    order.sort_unstable_by(compare);
+    let mut forest = Forest::of(corners.len());
+    for pair in order.windows(2) {
+        if compare(&pair[0], &pair[1]).is_eq() {
+            forest.unite(pair[0], pair[1]);
+        }
+    }
+    for i in 1..corners.len() {
+        if corners[i].face == corners[i - 1].face {
+            forest.unite(i, i - 1);
+        }
+    }
+    for (i, corner) in corners.iter_mut().enumerate() {
+        corner.class = forest.root(i);
+    }
+}
+
+/// The foot of `position` on the edge: 0 at its first end, 1 at its second.
+fn foot(star: &EdgeStar, position: DVec3) -> f64 {
+    let [u, w] = star.points;
     if position == u {
         return 0.0;
     }

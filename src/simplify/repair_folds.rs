@@ -12,7 +12,8 @@ use glam::DVec3;
 use crate::{
     Progress, Result,
     collapse::{
-        Changes, Freedom, LiveMesh, Observer, Patch, Rules, Star, foldedness, is_folded, unmirrored,
+        Changes, Freedom, LiveMesh, Observer, Patch, Rules, Star, check_uv_orientation,
+        fold_amount, is_folded,
     },
     geometry::double_area,
     mesh::Mesh,
@@ -260,10 +261,10 @@ impl Search {
                     continue;
                 };
                 star.patch(live, to, patch);
-                if unmirrored(live, patch).is_err() {
+                if check_uv_orientation(live, patch).is_err() {
                     continue;
                 }
-                let [before, after] = foldedness(live, patch, OPEN_COSINE);
+                let [before, after] = fold_amount(live, patch, OPEN_COSINE);
                 // The second term keeps tiny moves of tiny faces from counting as free.
                 let price = (area * step + 0.05 * edge * edge) * edge;
                 let gain = |after: f64| (before + flipped - after) / price;

@@ -3,7 +3,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::{
-    collapse::{Evaluation, LiveMesh, Method, MethodScratch, Proposal, Refusal, Ring, Rules, Site},
+    collapse::{
+        EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Proposal, Refusal, Rules, Site,
+    },
     parallel,
 };
 
@@ -12,7 +14,7 @@ use crate::{
 pub(super) struct Evaluator<'a> {
     live: &'a LiveMesh,
     method: &'a dyn Method,
-    ring_limit: usize,
+    star_limit: usize,
     rules: Rules,
     how: Evaluation,
 }
@@ -24,28 +26,28 @@ impl<'a> Evaluator<'a> {
     pub(super) fn new(
         live: &'a LiveMesh,
         method: &'a dyn Method,
-        ring_limit: usize,
+        star_limit: usize,
         rules: Rules,
         how: Evaluation,
     ) -> Self {
         Self {
             live,
             method,
-            ring_limit,
+            star_limit,
             rules,
             how,
         }
     }
 
-    /// Evaluates an edge on this thread; the ring is its ring afterwards, where it was gathered.
-    pub(super) fn one(&self, id: u32, ring: &mut Ring, scratch: &mut MethodScratch) -> Outcome {
+    /// Evaluates an edge on this thread; the star is its star afterwards, where it was gathered.
+    pub(super) fn one(&self, id: u32, star: &mut EdgeStar, scratch: &mut MethodScratch) -> Outcome {
         if self.is_crowded(id) {
             return Err(Refusal::Valence);
         }
-        if !ring.gather(self.live, id) {
+        if !star.gather(self.live, id) {
             return Err(Refusal::Unplaced);
         }
-        let site = Site::new(self.live, ring, self.rules)?;
+        let site = Site::new(self.live, star, self.rules)?;
         self.method.propose(&site, self.how, scratch)
     }
 
@@ -53,21 +55,21 @@ impl<'a> Evaluator<'a> {
     pub(super) fn shared(
         &self,
         ids: &[u32],
-        pool: &mut Vec<(Ring, MethodScratch)>,
+        pool: &mut Vec<(EdgeStar, MethodScratch)>,
     ) -> Vec<Outcome> {
         let threads = parallel::threads().min(ids.len());
         while pool.len() < threads {
             pool.push(Default::default());
         }
         let next = AtomicUsize::new(0);
-        let outcomes = parallel::map_mut(&mut pool[..threads], |_, (ring, scratch)| {
+        let outcomes = parallel::map_mut(&mut pool[..threads], |_, (star, scratch)| {
             let mut outcomes = Vec::new();
             loop {
                 let i = next.fetch_add(1, Ordering::Relaxed);
                 let Some(&id) = ids.get(i) else {
                     return outcomes;
                 };
-                outcomes.push((i, self.one(id, ring, scratch)));
+                outcomes.push((i, self.one(id, star, scratch)));
             }
         });
         let mut outcomes: Vec<(usize, Outcome)> = outcomes.into_iter().flatten().collect();
@@ -79,11 +81,11 @@ impl<'a> Evaluator<'a> {
     pub(super) fn all(&self, ids: &[u32], per_task: usize) -> Vec<Outcome> {
         let per_task = per_task.max(1);
         parallel::collect(ids.len().div_ceil(per_task), 1, |tasks, outcomes| {
-            let (mut ring, mut scratch) = (Ring::default(), MethodScratch::default());
+            let (mut star, mut scratch) = (EdgeStar::default(), MethodScratch::default());
             let ids = &ids[tasks.start * per_task..ids.len().min(tasks.end * per_task)];
             outcomes.reserve_exact(ids.len());
             for &id in ids {
-                outcomes.push(self.one(id, &mut ring, &mut scratch));
+                outcomes.push(self.one(id, &mut star, &mut scratch));
             }
         })
     }
@@ -91,7 +93,7 @@ impl<'a> Evaluator<'a> {
     /// True where more faces touch an edge than may; those at both ends count twice.
     fn is_crowded(&self, id: u32) -> bool {
         let valence = |[u, w]: [u32; 2]| self.live.valence(u) + self.live.valence(w);
-        let limit = self.ring_limit;
+        let limit = self.star_limit;
         self.live.edge(id).map(valence).is_some_and(|n| n > limit)
     }
 }

@@ -19,8 +19,8 @@ pub use self::{
     queue::Schedule,
 };
 use super::{
-    Changes, Counters, Evaluation, LiveMesh, Method, MethodScratch, Observer, Patch, Plan,
-    Proposal, Refusal, Refusals, Review, Ring, Rules,
+    Changes, Counters, EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Observer, Patch,
+    Plan, Proposal, Refusal, Refusals, Review, Rules,
 };
 use crate::{Error, Progress, Result, parallel};
 
@@ -54,12 +54,12 @@ pub struct Engine {
     rank_every: u64,
     queue: Option<Queue>,
     counters: Counters,
-    ring: Ring,
+    star: EdgeStar,
     scratch: MethodScratch,
     /// Buffers of the threads that share a batch.
-    pool: Vec<(Ring, MethodScratch)>,
+    pool: Vec<(EdgeStar, MethodScratch)>,
     patch: Patch,
-    /// The edge of `ring`, where nothing was committed since it was collected.
+    /// The edge of `star`, where nothing was committed since it was collected.
     gathered: Option<u32>,
     changes: Changes,
     inherited: Vec<(u32, Option<Proposal>)>,
@@ -78,7 +78,7 @@ impl Engine {
             rank_every: 0,
             queue: None,
             counters: Counters::default(),
-            ring: Ring::default(),
+            star: EdgeStar::default(),
             scratch: MethodScratch::alone(),
             pool: Vec::new(),
             patch: Patch::default(),
@@ -165,10 +165,10 @@ impl Engine {
                         progress.step("collapse", done, total)?;
                     }
                     if self.gathered != Some(id) {
-                        self.ring.gather(&self.live, id);
+                        self.star.gather(&self.live, id);
                     }
                     let position = proposal.position.position();
-                    self.ring.patch(&self.live, position, &mut self.patch);
+                    self.star.patch(&self.live, position, &mut self.patch);
                     match method.review(&self.live, &self.patch, &proposal) {
                         Review::Commit => {
                             self.measure_rank(method, id);
@@ -190,7 +190,7 @@ impl Engine {
         Ok(stop)
     }
 
-    /// Gives an edge at the front, whose ring changed or whose keys are not exact, keys that are better.
+    /// Gives an edge at the front, whose star changed or whose keys are not exact, keys that are better.
     fn requeue(&mut self, method: &dyn Method, queue: &mut Queue, id: u32) {
         if queue.is_estimated(id) {
             return self.evaluate_front(method, queue, id);
@@ -208,9 +208,9 @@ impl Engine {
         }
     }
 
-    /// Applies `self.patch`, the collapse of `self.ring`, and brings the queue up to date.
+    /// Applies `self.patch`, the collapse of `self.star`, and brings the queue up to date.
     fn commit(&mut self, method: &mut dyn Method, queue: &mut Queue, observer: &mut dyn Observer) {
-        let [vertex, gone] = self.ring.ends;
+        let [vertex, gone] = self.star.ends;
         self.inherited.clear();
         for e in self.live.edges_at(gone) {
             if let Some([a, b]) = self.live.edge(e) {
@@ -240,15 +240,15 @@ impl Engine {
     /// Marks the edges around the new vertex as stale, and gives those new keys that the schedule wants at once.
     fn refresh_around(&mut self, method: &dyn Method, queue: &mut Queue, vertex: u32) {
         let estimates = method.estimates();
-        // Every edge whose ring has a face of the patch ends at the new vertex or at a vertex of the link.
+        // Every edge whose star has a face of the patch ends at the new vertex or at a vertex of the link.
         let mut touched = std::mem::take(&mut self.touched);
         touched.clear();
         queue.next_round();
-        let spokes = self.ring.spokes.iter().map(|s| s.vertex);
+        let spokes = self.star.spokes.iter().map(|s| s.vertex);
         for v in std::iter::once(vertex).chain(spokes) {
             // No collapse makes such a vertex: its edges were never evaluated as legal, and are looked at again with the
             // collapse that brings the vertex below the limit.
-            if self.live.valence(v) > self.plan.ring_limit {
+            if self.live.valence(v) > self.plan.star_limit {
                 continue;
             }
             for e in self.live.edges_at(v) {
@@ -298,12 +298,12 @@ impl Engine {
     /// Evaluates edges again and re-keys them.
     fn refresh(&mut self, method: &dyn Method, queue: &mut Queue, ids: &[u32], how: Evaluation) {
         self.count(ids.len(), how);
-        let (per_task, limit) = (self.plan.evaluations_per_task, self.plan.ring_limit);
+        let (per_task, limit) = (self.plan.evaluations_per_task, self.plan.star_limit);
         let shared = ids.len() >= self.plan.shared_batch && parallel::threads() > 1;
         if !shared && ids.len() <= per_task {
             for &id in ids {
                 let evaluator = Evaluator::new(&self.live, method, limit, self.rules, how);
-                let outcome = evaluator.one(id, &mut self.ring, &mut self.scratch);
+                let outcome = evaluator.one(id, &mut self.star, &mut self.scratch);
                 self.gathered = Some(id);
                 self.note(queue, id, outcome, how);
             }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Heap, Key};
 use crate::collapse::{Evaluation, LiveMesh, Proposal};
 
-/// Time at which an edge whose ring changed is evaluated again, roughly where the method's plan says so.
+/// Time at which an edge whose star changed is evaluated again, roughly where the method's plan says so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Schedule {
@@ -23,7 +23,7 @@ pub enum Schedule {
 struct Mark {
     /// The round in which the edge was last marked.
     round: u32,
-    /// Its ring changed since it was evaluated, or was only rough.
+    /// Its star changed since it was evaluated, or was only rough.
     dirty: bool,
     /// It is in the heap.
     queued: bool,
@@ -31,7 +31,7 @@ struct Mark {
     estimated: bool,
 }
 
-/// Edges in the order of their keys. An illegal edge is in nobody's way: it comes back when its ring changes.
+/// Edges in the order of their keys. An illegal edge is in nobody's way: it comes back when its star changes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Queue {
     heap: Heap,
@@ -43,7 +43,7 @@ pub(super) struct Queue {
 
 /// The edge at the front.
 pub(super) enum Front {
-    /// Its ring changed since it was evaluated, or was only rough.
+    /// Its star changed since it was evaluated, or was only rough.
     Stale(u32),
     /// The next collapse.
     Ready(u32, Proposal),
@@ -131,7 +131,7 @@ impl Queue {
         self.round = self.round.wrapping_add(1);
     }
 
-    /// The edge's ring changed. It waits under its old cost, or at the front where it never had one. False where it
+    /// The edge's star changed. It waits under its old cost, or at the front where it never had one. False where it
     /// was already marked in this round.
     pub(super) fn stale(&mut self, live: &LiveMesh, id: u32) -> bool {
         self.grow(id);

@@ -78,7 +78,7 @@ impl Engine {
     }
 
     fn evaluator<'a>(&'a self, method: &'a dyn Method, how: Evaluation) -> Evaluator<'a> {
-        Evaluator::new(&self.live, method, self.plan.ring_limit, self.rules, how)
+        Evaluator::new(&self.live, method, self.plan.star_limit, self.rules, how)
     }
 
     /// Counts by which rule every edge that is left is refused.

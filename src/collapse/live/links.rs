@@ -1,4 +1,4 @@
-//! Who is at a vertex and at an edge: the lists of a live mesh, kept up to date face by face.
+//! Upkeep of the incidence lists of a live mesh, face by face.
 
 use super::{EdgeRecord, Incident, LiveMesh, NONE};
 

@@ -19,7 +19,7 @@ use self::{
     tile::{Tile, collapse_tile},
 };
 use super::{
-    Changes, Counters, Estimates, LiveMesh, Method, Observer, Patch, Ring, Rules, Schedule,
+    Changes, Counters, EdgeStar, Estimates, LiveMesh, Method, Observer, Patch, Rules, Schedule,
 };
 use crate::{Error, Progress, Result, parallel};
 
@@ -180,8 +180,8 @@ fn apply(
     observer: &mut dyn Observer,
 ) -> Result<u64> {
     let mut applied = 0;
-    let (mut ring, mut patch, mut changes) =
-        (Ring::default(), Patch::default(), Changes::default());
+    let (mut star, mut patch, mut changes) =
+        (EdgeStar::default(), Patch::default(), Changes::default());
     for c in order {
         if live.triangle_count() <= triangles {
             break;
@@ -189,8 +189,8 @@ fn apply(
         let edge = live
             .find_edge(c.keep, c.gone)
             .ok_or_else(|| Error::Internal("a collapse of a tile does not fit the mesh".into()))?;
-        ring.gather(live, edge);
-        ring.patch(live, c.to, &mut patch);
+        star.gather(live, edge);
+        star.patch(live, c.to, &mut patch);
         live.apply(&patch, &mut changes);
         method.committed(live, &patch);
         observer.committed(live, &patch);

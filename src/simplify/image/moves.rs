@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::{Limits, PictureScratch, Pictures};
 use crate::{
-    collapse::{Freedom, LiveMesh, Patch, Rules, Star, unfolded, unmirrored},
+    collapse::{Freedom, LiveMesh, Patch, Rules, Star, check_folds, check_uv_orientation},
     num::math,
     raster::{Unrender, ViewSubset},
 };
@@ -54,8 +54,8 @@ impl<S> Search<S> {
             return None;
         }
         star.patch(live, to, patch);
-        unmirrored(live, patch).ok()?;
-        unfolded(live, patch, rules).ok()?;
+        check_uv_orientation(live, patch).ok()?;
+        check_folds(live, patch, rules).ok()?;
         Some(to)
     }
 

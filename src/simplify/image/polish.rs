@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     Progress, Result,
-    collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, flip, unfolded},
+    collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, check_folds, flip},
     metric::Sides,
     parallel,
     raster::{Unrender, ViewSubset},
@@ -373,7 +373,7 @@ impl<E: Unrender> Polisher<'_, E> {
     fn flip<'p>(&self, edge: u32, patch: &'p mut Patch) -> Option<&'p Patch> {
         let ends = self.live.edge(edge)?;
         flip(self.live, ends, self.limits.rules, patch).ok()?;
-        unfolded(self.live, patch, self.limits.rules).ok()?;
+        check_folds(self.live, patch, self.limits.rules).ok()?;
         Some(patch)
     }
 

@@ -193,7 +193,7 @@ impl ImageChange {
 mod tests {
     use super::*;
     use crate::{
-        collapse::{Changes, Ring, Rules, Site},
+        collapse::{Changes, EdgeStar, Rules, Site},
         mesh::{canonical, generate},
         view::frame_of,
     };
@@ -204,14 +204,14 @@ mod tests {
         let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
         let mut tested = 0;
         for edge in (0..live.edge_ids()).step_by(3) {
-            let mut ring = Ring::default();
-            if !ring.gather(&live, edge) {
+            let mut star = EdgeStar::default();
+            if !star.gather(&live, edge) {
                 continue;
             }
-            let Ok(site) = Site::new(&live, &ring, Rules::default()) else {
+            let Ok(site) = Site::new(&live, &star, Rules::default()) else {
                 continue;
             };
-            let middle = site.fixed().unwrap_or_else(|| ring.midpoint());
+            let middle = site.fixed().unwrap_or_else(|| star.midpoint());
             let Ok(position) = site.admit(middle) else {
                 continue;
             };

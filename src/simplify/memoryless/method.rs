@@ -15,14 +15,14 @@ use serde::{Deserialize, Serialize};
 use super::vertex_sums::Fans;
 use crate::{
     collapse::{
-        Admitted, BoundaryEdge, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch,
-        Plan, Proposal, Refusal, Review, Ring, Site, Tileable,
+        Admitted, BoundaryEdge, EdgeStar, Estimates, Evaluation, LiveMesh, Method, MethodScratch,
+        Patch, Plan, Proposal, Refusal, Review, Site, Tileable,
     },
     geometry::Sym3,
     num::math,
 };
 
-/// Which constraint comes first in a ring with boundary edges; without, both are the same.
+/// Which constraint comes first in a star with boundary edges; without, both are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ConstraintOrder {
@@ -167,7 +167,7 @@ impl<const UNIT: bool> Constraints<UNIT> {
     }
 }
 
-/// What the method makes of a ring, relative to the midpoint of its edge.
+/// What the method makes of a star, relative to the midpoint of its edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Objective {
     origin: DVec3,
@@ -198,38 +198,38 @@ pub struct Placement {
 }
 
 impl Objective {
-    /// The sums over a ring; O(faces).
+    /// The sums over a star; O(faces).
     #[must_use]
-    pub fn of(ring: &Ring, options: &MemorylessOptions) -> Self {
-        let origin = ring.midpoint();
+    pub fn of(star: &EdgeStar, options: &MemorylessOptions) -> Self {
+        let origin = star.midpoint();
         let mut sums = Self {
             origin,
             normal_sum: DVec3::ZERO,
             volume_sum: 0.0,
             volume: Gradient::default(),
-            boundary: (!ring.boundary.is_empty()).then(|| Boundary::of(&ring.boundary, origin)),
+            boundary: (!star.boundary.is_empty()).then(|| Boundary::of(&star.boundary, origin)),
             shape: Gradient::default(),
             weights: [
                 options.volume_weight,
-                (1.0 - options.volume_weight) * ring.length2(),
+                (1.0 - options.volume_weight) * star.length2(),
             ],
             order: options.lt_order,
         };
-        for face in &ring.faces {
+        for face in &star.faces {
             let (n, l) = (face.normal, face.normal.dot(face.points[0] - origin));
             sums.normal_sum += n;
             sums.volume_sum += l;
             sums.volume.add_outer(1.0, n, n * -l);
         }
-        let count = ring.spokes.len() as f64;
+        let count = star.spokes.len() as f64;
         sums.shape.h = Sym3([count, 0.0, 0.0, count, 0.0, count]);
-        for spoke in &ring.spokes {
+        for spoke in &star.spokes {
             sums.shape.c -= spoke.point - origin;
         }
         sums
     }
 
-    /// The sums of a ring without boundary edges, relative to the midpoint of its edge, but for the shape of triangles.
+    /// The sums of a star without boundary edges, relative to the midpoint of its edge, but for the shape of triangles.
     pub(super) fn without_boundary(
         normal_sum: DVec3,
         volume_sum: f64,
@@ -316,9 +316,9 @@ impl Objective {
     ///
     /// Summed face by face: the expanded quadratic form loses the small costs of flat areas to cancellation.
     #[must_use]
-    pub fn volume_error(&self, ring: &Ring, position: DVec3) -> f64 {
+    pub fn volume_error(&self, star: &EdgeStar, position: DVec3) -> f64 {
         let mut sum = 0.0;
-        for face in &ring.faces {
+        for face in &star.faces {
             let six_volumes = face.normal.dot(position - face.points[0]);
             sum += six_volumes * six_volumes;
         }
@@ -327,9 +327,9 @@ impl Objective {
 
     /// Sum of the squared areas that the boundary edges sweep (length^4).
     #[must_use]
-    pub fn boundary_error(&self, ring: &Ring, position: DVec3) -> f64 {
+    pub fn boundary_error(&self, star: &EdgeStar, position: DVec3) -> f64 {
         let mut sum = 0.0;
-        for edge in &ring.boundary {
+        for edge in &star.boundary {
             let two_areas = (edge.to - edge.from).cross(position - edge.from);
             sum += two_areas.dot(two_areas);
         }
@@ -338,9 +338,9 @@ impl Objective {
 
     /// The edge cost (length^6).
     #[must_use]
-    pub fn cost(&self, ring: &Ring, position: DVec3) -> f64 {
-        self.weights[0] * self.volume_error(ring, position)
-            + self.weights[1] * self.boundary_error(ring, position)
+    pub fn cost(&self, star: &EdgeStar, position: DVec3) -> f64 {
+        self.weights[0] * self.volume_error(star, position)
+            + self.weights[1] * self.boundary_error(star, position)
     }
 }
 
@@ -381,7 +381,7 @@ impl Memoryless {
 /// # Errors
 /// The rule that forbids it.
 pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal, Refusal> {
-    let objective = Objective::of(site.ring, options);
+    let objective = Objective::of(site.star, options);
     let position = match site.fixed() {
         Some(position) => site.admit(position)?,
         None => {
@@ -395,7 +395,7 @@ pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal,
     Ok(Proposal {
         position,
         primary: 0,
-        secondary: objective.cost(site.ring, position.position()),
+        secondary: objective.cost(site.star, position.position()),
     })
 }
 
@@ -404,13 +404,13 @@ fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Ref
     let mut best = None;
     let mut refusal = Refusal::Unplaced;
     for candidate in [
-        site.ring.midpoint(),
-        site.ring.points[0],
-        site.ring.points[1],
+        site.star.midpoint(),
+        site.star.points[0],
+        site.star.points[1],
     ] {
         match site.admit(candidate) {
             Ok(admitted) => {
-                let cost = objective.cost(site.ring, admitted.position());
+                let cost = objective.cost(site.star, admitted.position());
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, admitted));
                 }

@@ -1,16 +1,16 @@
-//! Sums over the faces around every vertex, from which the memoryless cost of an edge follows without a look at its ring.
+//! Sums over the faces around every vertex, from which the memoryless cost of an edge follows without a look at its star.
 //!
 //! The planes of the faces at a vertex `u` pass through it: seen from `u`, the volume that a face sweeps when the
-//! vertex moves to `v` is `n . (v - u) / 6`, without a constant. So the sums of Lindstrom & Turk 1998 over the ring of
+//! vertex moves to `v` is `n . (v - u) / 6`, without a constant. So the sums of Lindstrom & Turk 1998 over the star of
 //! an edge are those at one end plus those at the other minus those of the faces at both, of which each has `n` only.
-//! Only for edges whose ring has no boundary edge; the sums follow every collapse, recomputed from the faces by
+//! Only for edges whose star has no boundary edge; the sums follow every collapse, recomputed from the faces by
 //! ascending id. Units: as the frame's, `n` is twice a face's area along its normal.
 
 use glam::DVec3;
 
 use super::method::{Gradient, MemorylessOptions, Objective};
 use crate::{
-    collapse::{LiveMesh, Patch, legality::RING_LIMIT},
+    collapse::{LiveMesh, Patch, legality::STAR_LIMIT},
     geometry::{self, Sym3},
 };
 
@@ -83,7 +83,7 @@ impl Fans {
         }
         for &v in &touched {
             // Its edges are no candidates; a collapse that brings it below the limit comes by here.
-            if live.valence(v) <= RING_LIMIT {
+            if live.valence(v) <= STAR_LIMIT {
                 let before = self.fans[v as usize].matrix;
                 self.collect(live, v);
                 let after = self.fans[v as usize].matrix;
@@ -125,9 +125,9 @@ impl Fans {
     }
 
     /// The memoryless cost of an edge at the place that the constraints determine, whatever the rules say to it (at
-    /// the midpoint where they determine none); `None` where its ring may have a boundary.
+    /// the midpoint where they determine none); `None` where its star may have a boundary.
     ///
-    /// Equal to the cost of the same place summed over the ring but for rounding. O(faces at an end).
+    /// Equal to the cost of the same place summed over the star but for rounding. O(faces at an end).
     pub(super) fn estimate(
         &self,
         live: &LiveMesh,
@@ -139,7 +139,7 @@ impl Fans {
         if live.faces_at_edge(edge) != 2 || !live.has_closed_fan(u) || !live.has_closed_fan(w) {
             return None;
         }
-        if live.valence(u) + live.valence(w) > RING_LIMIT {
+        if live.valence(u) + live.valence(w) > STAR_LIMIT {
             return None;
         }
         let mut shared = Fan::default();
@@ -177,35 +177,35 @@ mod tests {
     use super::*;
     use crate::{
         Silent,
-        collapse::{Engine, Observer, Ring, Rules, Schedule},
+        collapse::{EdgeStar, Engine, Observer, Rules, Schedule},
         mesh::{canonical, generate},
         simplify::memoryless::Memoryless,
         view::frame_of,
     };
 
-    /// The estimate of every edge against the sums over its ring; how many edges have one.
+    /// The estimate of every edge against the sums over its star; how many edges have one.
     fn compare(live: &LiveMesh, fans: &Fans) -> usize {
         let options = MemorylessOptions::default();
-        let (mut ring, mut estimated) = (Ring::default(), 0);
+        let (mut star, mut estimated) = (EdgeStar::default(), 0);
         for edge in 0..live.edge_ids() {
-            if !ring.gather(live, edge) {
+            if !star.gather(live, edge) {
                 continue;
             }
             let Some(estimate) = fans.estimate(live, edge, &options) else {
-                let inside = ring.boundary.is_empty() && ring.edge_faces == 2;
+                let inside = star.boundary.is_empty() && star.edge_faces == 2;
                 assert!(!inside, "edge {edge} has no estimate");
                 continue;
             };
-            let objective = Objective::of(&ring, &options);
+            let objective = Objective::of(&star, &options);
             // Where the shape of triangles decides, the estimate is that of the midpoint.
             let placement = objective.place();
             let place = match placement.position {
                 Some(position) if placement.accepted[2] == 3 => position,
-                _ => ring.midpoint(),
+                _ => star.midpoint(),
             };
-            let cost = objective.cost(&ring, place);
-            let scale = ring.faces.iter().map(|f| f.normal.dot(f.normal));
-            let noise = 1e-13 * scale.sum::<f64>() * (place - ring.points[0]).length_squared();
+            let cost = objective.cost(&star, place);
+            let scale = star.faces.iter().map(|f| f.normal.dot(f.normal));
+            let noise = 1e-13 * scale.sum::<f64>() * (place - star.points[0]).length_squared();
             assert!(
                 (cost - estimate).abs() <= 1e-6 * cost + noise,
                 "edge {edge}: {estimate} instead of {cost}"

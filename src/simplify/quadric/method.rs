@@ -305,9 +305,9 @@ impl Method for QuadricMethod {
         _: Evaluation,
         _: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
-        let [u, w] = site.ring.ends;
+        let [u, w] = site.star.ends;
         let sum = self.quadric(u).plus(self.quadric(w));
-        let wanted = site.fixed().unwrap_or_else(|| sum.place(site.ring.points));
+        let wanted = site.fixed().unwrap_or_else(|| sum.place(site.star.points));
         let position = site.admit(wanted)?;
         Ok(Proposal {
             position,

@@ -26,9 +26,9 @@ const TOLERANCE: f64 = 1e-9;
 /// Bounds beyond so many diagonals mean the same.
 const FAR: f64 = 4.0;
 /// Faces around an edge of which so many are left that [`Coverage`] can tell them apart: two go, and count twice.
-const RING_LIMIT: usize = Coverage::FACES + 4;
+const STAR_LIMIT: usize = Coverage::FACES + 4;
 /// Around an edge with more than so many faces, original triangles times faces that are looked at, at most: every
-/// collapse there changes so many rings. Collapses at the rim make such a hub smaller.
+/// collapse there changes so many stars. Collapses at the rim make such a hub smaller.
 const MANY: usize = 32;
 const WORK: usize = 1 << 17;
 /// Edges that are evaluated together. Part of the result's making, not of the result.
@@ -163,7 +163,7 @@ impl ToleranceMethod {
         scratch: &mut Scratch,
     ) -> Result<(), Refusal> {
         let fan = || {
-            let faces = site.ring.faces.iter().filter(|f| f.survives);
+            let faces = site.star.faces.iter().filter(|f| f.survives);
             faces.map(|f| f.points_after(position))
         };
         if self.local < f64::INFINITY
@@ -185,7 +185,7 @@ impl ToleranceMethod {
         Ok(())
     }
 
-    /// The place of least cost in the tolerance volume of a ring without boundary.
+    /// The place of least cost in the tolerance volume of a star without boundary.
     fn in_volume(
         &self,
         site: &Site<'_>,
@@ -193,7 +193,7 @@ impl ToleranceMethod {
         around: &mut Around,
     ) -> Option<DVec3> {
         let source = self.options.volume?;
-        if !site.ring.boundary.is_empty() {
+        if !site.star.boundary.is_empty() {
             return None;
         }
         let around = around.of(site)?;
@@ -205,21 +205,21 @@ impl ToleranceMethod {
     }
 }
 
-/// The neighbourhood of a ring, made where it is asked for.
+/// The neighbourhood of a star, made where it is asked for.
 #[derive(Default)]
 struct Around(Option<Option<Neighborhood>>);
 
 impl Around {
     fn of(&mut self, site: &Site<'_>) -> Option<&Neighborhood> {
-        let ring = site.ring;
+        let star = site.star;
         let faces = || {
-            ring.faces.iter().map(|f| OldFace {
+            star.faces.iter().map(|f| OldFace {
                 points: f.points,
                 ends: [0, 1, 2].map(|k| f.at.contains(&k)),
             })
         };
         let own = &mut self.0;
-        own.get_or_insert_with(|| Neighborhood::new(ring.midpoint(), faces()))
+        own.get_or_insert_with(|| Neighborhood::new(star.midpoint(), faces()))
             .as_ref()
     }
 }
@@ -227,11 +227,11 @@ impl Around {
 impl Method for ToleranceMethod {
     fn plan(&self) -> Plan {
         Plan {
-            // A larger ring than the certificate can tell apart would be refused after all the work.
-            ring_limit: if self.coverage.is_some() {
-                RING_LIMIT
+            // A larger star than the certificate can tell apart would be refused after all the work.
+            star_limit: if self.coverage.is_some() {
+                STAR_LIMIT
             } else {
-                legality::RING_LIMIT
+                legality::STAR_LIMIT
             },
             look_ahead: AHEAD,
             shared_batch: 2,
@@ -250,10 +250,10 @@ impl Method for ToleranceMethod {
         scratch: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
         let scratch = scratch.of(|_| Scratch::default());
-        let objective = Objective::of(site.ring, &self.options.placement);
+        let objective = Objective::of(site.star, &self.options.placement);
         if let Some(coverage) = &self.coverage {
             scratch.removed.clear();
-            scratch.removed.extend(site.ring.faces.iter().map(|f| f.id));
+            scratch.removed.extend(site.star.faces.iter().map(|f| f.id));
             let faces = scratch.removed.len();
             if faces > MANY && faces * coverage.load(&scratch.removed) > WORK {
                 return Err(Refusal::Valence);
@@ -268,7 +268,7 @@ impl Method for ToleranceMethod {
             Ok(Proposal {
                 position,
                 primary: 0,
-                secondary: objective.cost(site.ring, position.position()),
+                secondary: objective.cost(site.star, position.position()),
             })
         };
         if let Some(fixed) = site.fixed() {
@@ -282,8 +282,8 @@ impl Method for ToleranceMethod {
                 Err(reason) => refusal = refusal.max(reason),
             }
         }
-        let [u, w] = site.ring.points;
-        let mut others = [u, w, site.ring.midpoint()].map(|p| (objective.cost(site.ring, p), p));
+        let [u, w] = site.star.points;
+        let mut others = [u, w, site.star.midpoint()].map(|p| (objective.cost(site.star, p), p));
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, place) in others {
             match attempt(place, &mut around, scratch) {
@@ -299,7 +299,7 @@ impl Method for ToleranceMethod {
         Err(refusal)
     }
 
-    /// Another collapse may have changed a witness outside the ring: the test is made again, and finds the witnesses.
+    /// Another collapse may have changed a witness outside the star: the test is made again, and finds the witnesses.
     fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
         let Some(coverage) = &self.coverage else {
             return Review::Commit;

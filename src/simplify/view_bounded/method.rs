@@ -180,7 +180,7 @@ const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason {
 });
 
 /// Most faces around an edge that may collapse, its own counted at both ends: every piece of the map in them is cut along all of them.
-const RING_LIMIT: usize = 64;
+const STAR_LIMIT: usize = 64;
 
 /// Least coordinates along the axes along which a mesh is this many sizes away from the origin; 0 along others.
 /// Differences of coordinates that are alike in all but so many bits are exact.
@@ -241,7 +241,7 @@ fn lay_out(
 impl Method for ViewBounded {
     fn plan(&self) -> Plan {
         Plan {
-            ring_limit: RING_LIMIT,
+            star_limit: STAR_LIMIT,
             ..Plan::default()
         }
     }
@@ -262,13 +262,13 @@ impl Method for ViewBounded {
             Ok(()) => return Ok(wanted),
             Err(refusal) => refusal,
         };
-        let objective = Objective::of(site.ring, &self.placement);
-        let [u, w] = site.ring.points;
-        let mut others: Vec<(f64, Admitted)> = [site.ring.midpoint(), u, w]
+        let objective = Objective::of(site.star, &self.placement);
+        let [u, w] = site.star.points;
+        let mut others: Vec<(f64, Admitted)> = [site.star.midpoint(), u, w]
             .into_iter()
             .filter_map(|place| site.admit(place).ok())
             .filter(|place| place.position() != wanted.position.position())
-            .map(|place| (objective.cost(site.ring, place.position()), place))
+            .map(|place| (objective.cost(site.star, place.position()), place))
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (cost, position) in others {

@@ -115,7 +115,7 @@ impl Method for VisibilityMethod {
         scratch: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
         let placed = self.placing.propose(site, how, scratch)?;
-        let [u, w] = site.ring.ends;
+        let [u, w] = site.star.ends;
         let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
         Ok(Proposal {
             secondary: seen.error(placed.position.position()) + self.tie_weight * placed.secondary,

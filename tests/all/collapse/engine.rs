@@ -1,4 +1,4 @@
-//! The engine and what it stands on: live mesh, rings, rules, queue.
+//! The engine and what it stands on: live mesh, stars, rules, queue.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,8 +6,9 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     collapse::{
-        Changes, Engine, Estimates, Evaluation, Heap, Key, LiveMesh, Method, MethodScratch, NONE,
-        Observer, Patch, Plan, Proposal, Refusal, Review, Ring, Rules, Schedule, Site, Topology,
+        Changes, EdgeStar, Engine, Estimates, Evaluation, Heap, Key, LiveMesh, Method,
+        MethodScratch, NONE, Observer, Patch, Plan, Proposal, Refusal, Review, Rules, Schedule,
+        Site, Topology,
     },
     mesh::Mesh,
     num::Frame,
@@ -36,9 +37,9 @@ impl Method for Dice {
         _: Evaluation,
         _: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
-        let [u, w] = site.ring.ends;
+        let [u, w] = site.star.ends;
         let mut random = Random(self.0 ^ u64::from(u) << 32 ^ u64::from(w));
-        let [p, q] = site.ring.points;
+        let [p, q] = site.star.points;
         let wanted = site.fixed().unwrap_or_else(|| p + (q - p) * random.unit());
         Ok(Proposal {
             position: site.admit(wanted)?,
@@ -93,7 +94,7 @@ impl Method for Rough {
         how: Evaluation,
         scratch: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
-        let [price, off] = self.price(site.ring.ends);
+        let [price, off] = self.price(site.star.ends);
         let proposal = self.dice.propose(site, how, scratch)?;
         Ok(Proposal {
             primary: match how {
@@ -317,14 +318,14 @@ proptest! {
         // Collapses taken back leave the same mesh with its lists in another order.
         let mut shuffled = LiveMesh::new(&mesh, frame_of(&mesh));
         let fresh = shuffled.clone();
-        let (mut ring, mut patch, mut changes) = (Ring::default(), Patch::default(), Changes::default());
+        let (mut star, mut patch, mut changes) = (EdgeStar::default(), Patch::default(), Changes::default());
         let mut random = Random(seed);
         let mut done: Vec<Patch> = Vec::new();
         for _ in 0..steps {
             let edge = random.below(shuffled.edge_ids().max(1) as usize) as u32;
-            if edge < shuffled.edge_ids() && ring.gather(&shuffled, edge) {
-                let middle = shuffled.round(ring.midpoint()).expect("finite");
-                ring.patch(&shuffled, middle, &mut patch);
+            if edge < shuffled.edge_ids() && star.gather(&shuffled, edge) {
+                let middle = shuffled.round(star.midpoint()).expect("finite");
+                star.patch(&shuffled, middle, &mut patch);
                 shuffled.apply(&patch, &mut changes);
                 done.push(patch.clone());
             }
@@ -420,7 +421,7 @@ fn an_eager_queue_takes_the_cheapest_edge_every_time() {
 #[test]
 fn no_edge_is_collapsed_at_a_rough_price_and_cheap_rough_prices_change_no_order() {
     let mesh = meshes::torus(16, 10, 3);
-    // Folds look beyond the ring, so when an edge is evaluated would matter.
+    // Folds look beyond the star, so when an edge is evaluated would matter.
     let rules = Rules {
         fold_cosine: -1.0,
         ..Rules::default()
@@ -530,30 +531,30 @@ fn an_edge_between_two_boundaries_does_not_pinch_the_surface() {
     });
     let mesh = Mesh::from_triangles(positions, triangles.collect()).expect("valid");
     let live = LiveMesh::new(&mesh, Frame::default());
-    let mut ring = Ring::default();
-    assert!(ring.gather(&live, live.find_edge(2, 3).expect("an edge")));
-    let refused = Site::new(&live, &ring, Rules::default()).err();
+    let mut star = EdgeStar::default();
+    assert!(star.gather(&live, live.find_edge(2, 3).expect("an edge")));
+    let refused = Site::new(&live, &star, Rules::default()).err();
     assert_eq!(refused, Some(Refusal::Pinch));
-    assert!(ring.gather(&live, live.find_edge(2, 4).expect("an edge")));
-    assert!(Site::new(&live, &ring, Rules::default()).is_ok());
+    assert!(star.gather(&live, live.find_edge(2, 4).expect("an edge")));
+    assert!(Site::new(&live, &star, Rules::default()).is_ok());
 }
 
 #[test]
 fn a_handle_is_not_closed_and_free_topology_may_close_it() {
     let mesh = meshes::torus(3, 8, 2);
     let live = LiveMesh::new(&mesh, Frame::default());
-    // Vertices 0, 8, 16 form a ring of three edges around the torus and no face.
-    let mut ring = Ring::default();
-    assert!(ring.gather(&live, live.find_edge(0, 8).expect("an edge")));
+    // Vertices 0, 8, 16 form a cycle of three edges around the torus and no face.
+    let mut star = EdgeStar::default();
+    assert!(star.gather(&live, live.find_edge(0, 8).expect("an edge")));
     assert_eq!(
-        Site::new(&live, &ring, Rules::default()).err(),
+        Site::new(&live, &star, Rules::default()).err(),
         Some(Refusal::Link)
     );
     let free = Rules {
         topology: Topology::Free,
         ..Rules::default()
     };
-    assert!(Site::new(&live, &ring, free).is_ok());
+    assert!(Site::new(&live, &star, free).is_ok());
 }
 
 #[test]

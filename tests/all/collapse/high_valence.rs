@@ -11,8 +11,8 @@ use lodmark::{
     Silent,
     bound::view_cell::ViewCell,
     collapse::{
-        Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal,
-        Refusal, Review, Ring, RingFace, Rules, Schedule, Site, foldedness,
+        EdgeStar, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan,
+        Proposal, Refusal, Review, Rules, Schedule, Site, StarFace, fold_amount,
     },
     mesh::{Materials, Mesh, MeshParts, canonical},
     simplify::{
@@ -86,7 +86,7 @@ fn tangle(seed: u64) -> Mesh {
     .expect("valid")
 }
 
-fn sorted(f: &RingFace) -> [u32; 3] {
+fn sorted(f: &StarFace) -> [u32; 3] {
     let mut corners = f.corners;
     corners.sort_unstable();
     corners
@@ -98,29 +98,29 @@ fn nothing_is_missed_or_met_twice_around_two_hubs() {
     for seed in 0..300 {
         let mesh = tangle(seed);
         let live = LiveMesh::new(&mesh, frame_of(&mesh));
-        let mut ring = Ring::default();
-        assert!(ring.gather(&live, live.find_edge(0, 1).expect("an edge")));
-        assert!(ring.faces.len() > 48, "{}", ring.faces.len());
+        let mut star = EdgeStar::default();
+        assert!(star.gather(&live, live.find_edge(0, 1).expect("an edge")));
+        assert!(star.faces.len() > 48, "{}", star.faces.len());
         // Every set of corners once.
-        let mut different: BTreeMap<[u32; 3], &RingFace> = BTreeMap::new();
-        for face in &ring.faces {
+        let mut different: BTreeMap<[u32; 3], &StarFace> = BTreeMap::new();
+        for face in &star.faces {
             different.entry(sorted(face)).or_insert(face);
         }
         let both = |c: &&[u32; 3]| c.contains(&0) && c.contains(&1);
         let edge_faces = different.keys().filter(both).count();
-        assert_eq!(ring.edge_faces as usize, edge_faces);
-        let mut degree = [u32::from(ring.edge_feature); 2];
+        assert_eq!(star.edge_faces as usize, edge_faces);
+        let mut degree = [u32::from(star.edge_feature); 2];
         let vertices: BTreeSet<u32> = different.keys().flatten().copied().collect();
         let others = vertices.into_iter().filter(|&v| v > 1);
-        assert!(others.eq(ring.spokes.iter().map(|s| s.vertex)));
-        for spoke in &ring.spokes {
+        assert!(others.eq(star.spokes.iter().map(|s| s.vertex)));
+        for spoke in &star.spokes {
             assert_eq!(spoke.point, live.position(spoke.vertex));
             for (end, degree) in degree.iter_mut().enumerate() {
                 let side = [end as u32, spoke.vertex];
                 let at = |c: &&[u32; 3]| side.iter().all(|v| c.contains(v));
                 let faces = different.keys().filter(at).count() as u32;
                 assert_eq!(spoke.faces[end], faces, "faces at {side:?}, seed {seed}");
-                let all = ring.faces.iter().filter(|f| at(&&f.corners));
+                let all = star.faces.iter().filter(|f| at(&&f.corners));
                 let materials: BTreeSet<u32> = all.map(|f| live.material(f.id)).collect();
                 let feature = faces > 2 || (faces == 2 && materials.len() > 1);
                 assert_eq!(spoke.feature[end], feature, "feature {side:?}, seed {seed}");
@@ -129,37 +129,37 @@ fn nothing_is_missed_or_met_twice_around_two_hubs() {
             let beside = |c: &[u32; 3]| [0, 1, spoke.vertex].iter().all(|v| c.contains(v));
             assert_eq!(spoke.beside, different.keys().any(beside));
         }
-        assert_eq!(ring.feature_degree, degree);
-        for (i, face) in ring.faces.iter().enumerate() {
-            let rest = |f: &RingFace| {
+        assert_eq!(star.feature_degree, degree);
+        for (i, face) in star.faces.iter().enumerate() {
+            let rest = |f: &StarFace| {
                 let rest = sorted(f).into_iter().filter(|&v| v > 1);
                 rest.collect::<Vec<_>>()
             };
-            let earlier = |f: &&RingFace| {
+            let earlier = |f: &&StarFace| {
                 f.survives && (f.at[0] < 3) != (face.at[0] < 3) && rest(f) == rest(face)
             };
-            let doubled = ring.faces[..i].iter().any(|f| earlier(&f));
+            let doubled = star.faces[..i].iter().any(|f| earlier(&f));
             assert_eq!(face.survives, !face.has_both() && !doubled, "face {i}");
             seen[0] += usize::from(doubled);
         }
         for end in 0..2 {
-            let at: Vec<&RingFace> = ring.faces.iter().filter(|f| f.at[end] < 3).collect();
+            let at: Vec<&StarFace> = star.faces.iter().filter(|f| f.at[end] < 3).collect();
             let linked = |i: usize, j: usize| {
                 let mut corners = at[i].corners.iter();
                 corners.any(|v| *v != end as u32 && at[j].corners.contains(v))
             };
             let pinched = groups(at.len(), linked) > 1;
-            assert_eq!(ring.is_pinched(end), pinched, "end {end}, seed {seed}");
+            assert_eq!(star.is_pinched(end), pinched, "end {end}, seed {seed}");
             seen[1 + usize::from(pinched)] += 1;
         }
-        seen[3] += ring.faces.len() - different.len();
-        seen[4] += ring.feature_degree[0] as usize;
+        seen[3] += star.faces.len() - different.len();
+        seen[4] += star.feature_degree[0] as usize;
         seen[5] += usize::from(edge_faces > 2);
     }
     assert!(seen.iter().all(|&n| n > 5), "{seen:?}");
 }
 
-/// The sum of [`foldedness`] after a collapse, from all faces of the mesh: over sides of exactly two changed faces, and
+/// The sum of [`fold_amount`] after a collapse, from all faces of the mesh: over sides of exactly two changed faces, and
 /// of one changed and one other.
 fn folded_after(live: &LiveMesh, patch: &Patch, cosine: f64) -> f64 {
     let mut faces: Vec<([u32; 3], DVec3, bool)> = Vec::new();
@@ -203,14 +203,14 @@ fn no_fold_around_a_hub_is_missed_or_counted_twice() {
     for seed in 0..60 {
         let mesh = tangle(seed);
         let live = LiveMesh::new(&mesh, frame_of(&mesh));
-        let (mut ring, mut patch) = (Ring::default(), Patch::default());
+        let (mut star, mut patch) = (EdgeStar::default(), Patch::default());
         let hubs = live.find_edge(0, 1).expect("an edge");
-        // A side of its ring may end at a hub that is not in it.
+        // A side of its star may end at a hub that is not in it.
         let spoke = live.find_edge(0, 7).or(live.find_edge(1, 7));
         for edge in [Some(hubs), spoke].into_iter().flatten() {
-            assert!(ring.gather(&live, edge));
-            ring.patch(&live, ring.midpoint(), &mut patch);
-            let [_, after] = foldedness(&live, &patch, -0.2);
+            assert!(star.gather(&live, edge));
+            star.patch(&live, star.midpoint(), &mut patch);
+            let [_, after] = fold_amount(&live, &patch, -0.2);
             let expected = folded_after(&live, &patch, -0.2);
             assert!(
                 (after - expected).abs() < 1e-9,
@@ -241,7 +241,7 @@ struct Modest(AtomicUsize);
 impl Method for Modest {
     fn plan(&self) -> Plan {
         Plan {
-            ring_limit: 40,
+            star_limit: 40,
             ..Plan::default()
         }
     }
@@ -256,7 +256,7 @@ impl Method for Modest {
         how: Evaluation,
         scratch: &mut MethodScratch,
     ) -> Result<Proposal, Refusal> {
-        self.0.fetch_max(site.ring.faces.len(), Ordering::Relaxed);
+        self.0.fetch_max(site.star.faces.len(), Ordering::Relaxed);
         Dice(3).propose(site, how, scratch)
     }
 

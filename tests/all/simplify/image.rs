@@ -4,8 +4,8 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     collapse::{
-        Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal,
-        Refusal, Review, Ring, Rules, Schedule, Site, Topology,
+        EdgeStar, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan,
+        Proposal, Refusal, Review, Rules, Schedule, Site, Topology,
     },
     mesh::{Mesh, canonical, generate},
     num::math,
@@ -279,9 +279,9 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 // (1) Every legal collapse, judged by drawing the whole result.
                 let mut cheapest: Option<(Key, i64)> = None;
                 for edge in (0..live.edge_ids()).filter(|&e| live.edge(e).is_some()) {
-                    let mut ring = Ring::default();
-                    ring.gather(&live, edge);
-                    let Ok(site) = Site::new(&live, &ring, rules(mesh_name)) else {
+                    let mut star = EdgeStar::default();
+                    star.gather(&live, edge);
+                    let Ok(site) = Site::new(&live, &star, rules(mesh_name)) else {
                         continue;
                     };
                     let Ok(proposal) = memoryless::propose(&site, &MemorylessOptions::default())

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     Silent,
-    collapse::{Anchor, LiveMesh, Ring, Rules, Site},
+    collapse::{Anchor, EdgeStar, LiveMesh, Rules, Site},
     mesh::{Mesh, MeshParts},
     num::{Frame, Precision},
     simplify::{
@@ -73,10 +73,10 @@ fn boundary() -> LiveMesh {
     live(positions, &triangles)
 }
 
-pub(crate) fn ring(live: &LiveMesh, u: u32, w: u32) -> Ring {
-    let mut ring = Ring::default();
-    assert!(ring.gather(live, live.find_edge(u, w).expect("an edge")));
-    ring
+pub(crate) fn star(live: &LiveMesh, u: u32, w: u32) -> EdgeStar {
+    let mut star = EdgeStar::default();
+    assert!(star.gather(live, live.find_edge(u, w).expect("an edge")));
+    star
 }
 
 fn near(found: f64, expected: f64) {
@@ -95,17 +95,17 @@ struct Vector {
 }
 
 fn check(live: &LiveMesh, expected: &Vector) {
-    let ring = ring(live, 0, 1);
-    let objective = Objective::of(&ring, &MemorylessOptions::default());
+    let star = star(live, 0, 1);
+    let objective = Objective::of(&star, &MemorylessOptions::default());
     let placement = objective.place();
     assert_eq!(placement.accepted, expected.accepted);
     let v = placement.position.expect("determined");
     for (found, expected) in v.to_array().into_iter().zip(expected.v) {
         near(found, expected);
     }
-    near(objective.volume_error(&ring, v), expected.volume);
-    near(objective.boundary_error(&ring, v), expected.boundary);
-    near(objective.cost(&ring, v), expected.cost);
+    near(objective.volume_error(&star, v), expected.volume);
+    near(objective.boundary_error(&star, v), expected.boundary);
+    near(objective.cost(&star, v), expected.cost);
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn the_order_of_constraints_matters_at_a_boundary_only() {
             lt_order,
             ..MemorylessOptions::default()
         };
-        Objective::of(&ring(live, 0, 1), &options).place()
+        Objective::of(&star(live, 0, 1), &options).place()
     };
     let both = |live: &LiveMesh| {
         [ConstraintOrder::Paper, ConstraintOrder::Cgal].map(|order| place(live, order).position)
@@ -181,12 +181,12 @@ fn determinant(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     a.x * (b.y * c.z - b.z * c.y) - a.y * (b.x * c.z - b.z * c.x) + a.z * (b.x * c.y - b.y * c.x)
 }
 
-fn swept(live: &LiveMesh, ring: &Ring, v: DVec3) -> Vec<f64> {
-    let volume = |f: &lodmark::collapse::RingFace| {
+fn swept(live: &LiveMesh, star: &EdgeStar, v: DVec3) -> Vec<f64> {
+    let volume = |f: &lodmark::collapse::StarFace| {
         let [a, b, c] = live.points(f.id).expect("live");
         determinant(a - v, b - v, c - v) / 6.0
     };
-    ring.faces.iter().map(volume).collect()
+    star.faces.iter().map(volume).collect()
 }
 
 proptest! {
@@ -200,23 +200,23 @@ proptest! {
             p + DVec3::new(axis(), axis(), axis())
         });
         let live = live(positions.collect(), &INTERIOR);
-        let ring = ring(&live, 0, 1);
-        let objective = Objective::of(&ring, &MemorylessOptions::default());
+        let star = star(&live, 0, 1);
+        let objective = Objective::of(&star, &MemorylessOptions::default());
         let placement = objective.place();
         let v = placement.position.expect("determined");
-        let volumes = swept(&live, &ring, v);
+        let volumes = swept(&live, &star, v);
         prop_assert!(volumes.iter().sum::<f64>().abs() < 1e-12);
         let best: f64 = volumes.iter().map(|x| x * x).sum();
-        prop_assert!((objective.volume_error(&ring, v) - best).abs() < 1e-12);
+        prop_assert!((objective.volume_error(&star, v) - best).abs() < 1e-12);
         prop_assume!(placement.accepted[2] == 3);
-        let normal: DVec3 = ring.faces.iter().map(|f| {
+        let normal: DVec3 = star.faces.iter().map(|f| {
             let [a, b, c] = live.points(f.id).expect("live");
             (b - a).cross(c - a)
         }).sum();
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let along = normal.cross(axis).normalize() * 1e-3;
             for v in [v + along, v - along] {
-                let there: f64 = swept(&live, &ring, v).iter().map(|x| x * x).sum();
+                let there: f64 = swept(&live, &star, v).iter().map(|x| x * x).sum();
                 prop_assert!(there >= best * (1.0 - 1e-9));
             }
         }
@@ -226,7 +226,7 @@ proptest! {
     fn the_cost_of_a_boundary_is_the_squared_area_it_sweeps(seed: u64) {
         let mut random = Random(seed);
         let live = boundary();
-        let ring = ring(&live, 0, 1);
+        let star = star(&live, 0, 1);
         let v = DVec3::new(random.unit(), random.unit(), random.unit());
         let edges = [(2, 0), (0, 1), (1, 6)];
         let areas = edges.map(|(s, t)| {
@@ -234,12 +234,12 @@ proptest! {
             s.cross(t).length() * 0.5
         });
         let expected: f64 = areas.iter().map(|a| a * a).sum();
-        let objective = Objective::of(&ring, &MemorylessOptions::default());
-        prop_assert!((objective.boundary_error(&ring, v) - expected).abs() < 1e-12);
+        let objective = Objective::of(&star, &MemorylessOptions::default());
+        prop_assert!((objective.boundary_error(&star, v) - expected).abs() < 1e-12);
         let length2 = (live.position(1) - live.position(0)).length_squared();
-        let volume: f64 = swept(&live, &ring, v).iter().map(|x| x * x).sum();
+        let volume: f64 = swept(&live, &star, v).iter().map(|x| x * x).sum();
         let cost = 0.5 * volume + 0.5 * length2 * expected;
-        prop_assert!((objective.cost(&ring, v) - cost).abs() < 1e-12);
+        prop_assert!((objective.cost(&star, v) - cost).abs() < 1e-12);
     }
 }
 
@@ -248,15 +248,15 @@ fn a_proposal_is_judged_at_the_position_the_file_can_store() {
     let positions: Vec<DVec3> = [U, W].into_iter().chain(LINK).collect();
     let mesh = Mesh::from_triangles(positions, INTERIOR.to_vec()).expect("valid");
     let live = LiveMesh::new(&mesh, Frame::for_size(3.0));
-    let ring = ring(&live, 0, 1);
+    let star = star(&live, 0, 1);
     let options = MemorylessOptions::default();
-    let site = Site::new(&live, &ring, Rules::default()).expect("legal");
+    let site = Site::new(&live, &star, Rules::default()).expect("legal");
     assert_eq!(site.anchor, Anchor::Free);
     let proposal = propose(&site, &options).expect("placed");
     let p = proposal.position.position();
     let file = live.frame().leave(p);
     assert_eq!(file, Precision::F32.round_vector(file));
-    let cost = Objective::of(&ring, &options).cost(&ring, p);
+    let cost = Objective::of(&star, &options).cost(&star, p);
     assert_eq!(proposal.secondary.to_bits(), cost.to_bits());
 }
 

@@ -4,8 +4,8 @@ use glam::DVec3;
 use lodmark::{
     Error, Silent,
     collapse::{
-        Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star, flip,
-        unfolded,
+        Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star,
+        check_folds, flip,
     },
     geometry::closest_point,
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
@@ -511,7 +511,7 @@ fn a_flip_and_its_flip_leave_the_surface_as_it_was() {
     assert_ne!(middle, before);
     assert_eq!(live.find_edge(edge[0], edge[1]), None);
     let back = patch.reversed();
-    assert!(unfolded(&live, &back, Rules::default()).is_ok());
+    assert!(check_folds(&live, &back, Rules::default()).is_ok());
     live.apply(&back, &mut Changes::default());
     assert_eq!(live.to_mesh().expect("valid"), before);
     assert!(live.find_edge(edge[0], edge[1]).is_some());

@@ -9,7 +9,7 @@ use lodmark::{
     Silent,
     bound::tolerance::Source,
     collapse::{
-        Changes, History, LiveMesh, Method, Patch, Proposal, Replay, Review, Ring, Rules, Site,
+        Changes, EdgeStar, History, LiveMesh, Method, Patch, Proposal, Replay, Review, Rules, Site,
     },
     mesh::{Mesh, canonical, content_sha256, generate},
     num::{Frame, Precision},
@@ -91,14 +91,14 @@ proptest! {
         let bound = share * diagonal(&mesh);
         let original = faces(&mesh);
         let mut random = crate::support::Random(seed);
-        let (mut ring, mut patch, mut changes) = (Ring::default(), Patch::default(), Changes::default());
+        let (mut star, mut patch, mut changes) = (EdgeStar::default(), Patch::default(), Changes::default());
         for _ in 0..15 {
             let edge = random.below(live.edge_ids() as usize) as u32;
-            if live.edge(edge).is_none() || !ring.gather(&live, edge) {
+            if live.edge(edge).is_none() || !star.gather(&live, edge) {
                 continue;
             }
-            let Ok(site) = Site::new(&live, &ring, Rules::default()) else { continue };
-            let [u, w] = ring.points;
+            let Ok(site) = Site::new(&live, &star, Rules::default()) else { continue };
+            let [u, w] = star.points;
             let mut noise = || (random.unit() - 0.5) * bound;
             let place = u.lerp(w, 0.5 + noise() / bound) + DVec3::new(noise(), noise(), noise());
             let Ok(position) = site.admit(site.fixed().unwrap_or(place)) else { continue };

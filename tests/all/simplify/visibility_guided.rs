@@ -3,7 +3,9 @@
 use glam::DVec3;
 use lodmark::{
     Error, Silent,
-    collapse::{Engine, Evaluation, LiveMesh, Method, MethodScratch, Ring, Rules, Schedule, Site},
+    collapse::{
+        EdgeStar, Engine, Evaluation, LiveMesh, Method, MethodScratch, Rules, Schedule, Site,
+    },
     mesh::{Mesh, canonical, generate},
     simplify::{
         Amount, MethodOptions, Options, Replay,
@@ -17,7 +19,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::{
-    simplify::memoryless::{interior, ring},
+    simplify::memoryless::{interior, star},
     support::{Random, expect, folder, meshes, put, same_on_all_threads},
 };
 
@@ -67,7 +69,7 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
     let options = VisibilityOptions {
         quadric: QuadricOptions {
             weighting: Weighting::Unit,
-            // The ring's outer edges are boundaries of the test's mesh, not of the vector's.
+            // The star's outer edges are boundaries of the test's mesh, not of the vector's.
             boundary_weight: 0.0,
             uncertainty: None,
         },
@@ -81,8 +83,8 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
             ..options.clone()
         };
         let method = VisibilityMethod::new(&live, &options, &visibility).expect("ten of them");
-        let ring: Ring = ring(&live, 0, 1);
-        let site = Site::new(&live, &ring, Rules::default()).expect("legal");
+        let star: EdgeStar = star(&live, 0, 1);
+        let site = Site::new(&live, &star, Rules::default()).expect("legal");
         let mut scratch = MethodScratch::default();
         let proposal = method.propose(&site, Evaluation::Exact, &mut scratch);
         let proposal = proposal.expect("legal");

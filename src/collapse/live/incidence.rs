@@ -1,4 +1,4 @@
-//! A short list per vertex, in one pool.
+//! Incidence lists: the faces or the edges at every vertex, in one pool.
 //!
 //! Contiguous rather than linked: whoever walks a list on a large mesh waits for one cache miss, not for one per
 //! element. A list that outgrows its block moves to the end of the pool with twice the room; the old block is lost,
@@ -21,14 +21,14 @@ struct Span {
 
 /// Lists of `T` by vertex, in no useful order.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Lists<T> {
+pub(super) struct IncidenceLists<T> {
     spans: Vec<Span>,
     pool: Vec<T>,
-    /// Where the elements of long lists are, once one was removed.
+    /// Index of every element of the long lists from which one was removed.
     places: BTreeMap<u32, BTreeMap<T, u32>>,
 }
 
-impl<T: Copy + Default + Ord> Lists<T> {
+impl<T: Copy + Default + Ord> IncidenceLists<T> {
     /// Empty lists with room for the given numbers of elements.
     pub(super) fn with_room(counts: &[u32]) -> Self {
         let mut spans = Vec::with_capacity(counts.len());
@@ -54,6 +54,13 @@ impl<T: Copy + Default + Ord> Lists<T> {
     pub(super) fn of(&self, vertex: u32) -> &[T] {
         let span = self.spans[vertex as usize];
         &self.pool[span.start as usize..][..span.count as usize]
+    }
+
+    /// The list of a vertex; `None` where there is no such vertex.
+    #[inline]
+    pub(super) fn get(&self, vertex: u32) -> Option<&[T]> {
+        let span = self.spans.get(vertex as usize)?;
+        Some(&self.pool[span.start as usize..][..span.count as usize])
     }
 
     /// Adds an element.
@@ -114,7 +121,7 @@ mod tests {
 
     #[test]
     fn no_long_list_loses_an_element_or_keeps_one_that_is_gone() {
-        let mut lists: Lists<u32> = Lists::with_room(&[0, 5000]);
+        let mut lists: IncidenceLists<u32> = IncidenceLists::with_room(&[0, 5000]);
         let mut known: Vec<Vec<u32>> = vec![Vec::new(); 2];
         let (mut x, mut remembered) = (1_u32, 0);
         let mut next = |below: u32| {
@@ -152,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_list_that_outgrows_its_room_loses_nothing() {
-        let mut lists: Lists<u32> = Lists::with_room(&[0, 1, 0]);
+        let mut lists: IncidenceLists<u32> = IncidenceLists::with_room(&[0, 1, 0]);
         for i in 0..50 {
             for v in 0..3 {
                 lists.push(v, 10 * i + v);
