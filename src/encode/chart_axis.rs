@@ -64,11 +64,10 @@ impl Axis {
     fn linear_ticks(&self) -> Vec<Tick> {
         let [low, high] = self.range;
         let magnitude = math::log10((high - low) / MOST_TICKS).floor() as i32;
-        let steps = (magnitude..=magnitude + 1)
+        let mut steps = (magnitude..=magnitude + 1)
             .flat_map(|exponent| [1.0, 2.0, 5.0].map(|digit| (digit * ten_to(exponent), exponent)));
         let (step, exponent) = steps
-            .filter(|(step, _)| (high - low) / step <= MOST_TICKS)
-            .next()
+            .find(|(step, _)| (high - low) / step <= MOST_TICKS)
             .unwrap_or((high - low, magnitude));
         let decimals = exponent.min(0).unsigned_abs() as usize;
         let numbers = (low / step).ceil() as i64..=(high / step).floor() as i64;

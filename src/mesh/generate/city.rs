@@ -11,7 +11,7 @@ const COLUMNS: u32 = 20;
 const ROWS: u32 = 21;
 /// From one block to the next.
 const PITCH: f64 = 2.4;
-/// Every so many streets there is a wide one.
+/// Streets from one wide street to the next.
 const WIDE_EVERY: u32 = 5;
 /// Its width.
 const WIDE: f64 = 4.0;
@@ -27,7 +27,7 @@ pub fn city() -> Mesh {
     buildings(COLUMNS, ROWS)
 }
 
-/// A [`city`] of so many buildings along a street and so many streets: 10 triangles per building.
+/// A [`city`] of `rows` streets with `columns` buildings each: 10 triangles per building.
 #[must_use]
 pub fn buildings(columns: u32, rows: u32) -> Mesh {
     let mut random = Pcg32::new(7, 1);

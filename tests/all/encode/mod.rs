@@ -1,3 +1,4 @@
 //! What is written besides meshes: pictures, arrays, reports, hashes.
 
+mod arrays;
 mod formats;

@@ -2,4 +2,5 @@
 
 mod files;
 mod hostile;
+mod mesh_methods;
 mod readers;
