@@ -7,8 +7,8 @@ use crate::{
 };
 
 impl LiveMesh {
-    /// What is left, in file units: triangles and vertices keep their relative order, only referenced vertices and
-    /// wedges are kept.
+    /// Makes a mesh in file units of the triangles that are left: triangles and vertices keep their relative order, and
+    /// only referenced vertices and wedges are kept.
     ///
     /// # Errors
     /// [`Error::Internal`], should a promise of [`Mesh`] not hold (a bug).

@@ -1,22 +1,22 @@
-//! What a run did, in numbers.
+//! Counts of the work of a run.
 
 use serde::Serialize;
 
 use super::Refusals;
 
-/// What a run did. The same for every number of threads.
+/// Counts of the work of a run. The same for every number of threads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Counters {
     /// Collapses committed.
     pub collapses: u64,
     /// Edges evaluated, those of rank measurements not counted.
     pub evaluations: u64,
-    /// Costs of edges that were estimated: from sums, or by a glance at some of the views.
+    /// Costs of edges that were estimated, from sums or roughly.
     #[serde(skip_serializing_if = "is_zero")]
     pub estimates: u64,
     /// Edges an eager queue would have evaluated for the same collapses.
     pub evaluations_if_eager: u64,
-    /// How often each rule refused in an evaluation.
+    /// Evaluations that each reason refused.
     pub refusals: Refusals,
     /// Where rank measurement is on: for every measured collapse, the share of legal edges that were truly cheaper,
     /// in [0, 1).
@@ -29,7 +29,7 @@ fn is_zero(count: &u64) -> bool {
 }
 
 impl Counters {
-    /// Adds what another run did, its ranks excepted.
+    /// Adds the counts of another run, its ranks excepted.
     pub(super) fn add(&mut self, other: &Self) {
         self.collapses += other.collapses;
         self.evaluations += other.evaluations;

@@ -1,4 +1,4 @@
-//! Which edges may be flipped: inside a smooth, convex and uniform part of the surface only.
+//! Flips of edges, allowed inside a smooth, convex and uniform part of the surface only.
 //!
 //! Topology: exactly two faces, no edge yet between their far corners ([`Patch::set_flip`]). Attributes: the faces
 //! agree in their material and in every value at both ends of the edge, normals included; so no seam is crossed.
@@ -10,8 +10,9 @@ use crate::mesh::ChannelKind;
 /// Fills `patch` with the flip of the edge `ends`, where the rules allow it.
 ///
 /// # Errors
-/// The rule that forbids it: [`Refusal::Locked`] between locked vertices, [`Refusal::Link`] for the topology, [`Refusal::FeaturePinch`] for attributes,
-/// [`Refusal::Degenerate`], [`Refusal::Flip`] or [`Refusal::Mirror`] for the shape.
+/// The rule that forbids it: [`Refusal::Locked`] between locked vertices, [`Refusal::Link`] for the topology,
+/// [`Refusal::FeaturePinch`] for attributes, [`Refusal::Degenerate`], [`Refusal::Flip`] or [`Refusal::Mirror`] for the
+/// shape.
 ///
 /// # Panics
 /// Where there is no such vertex.

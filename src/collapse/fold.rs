@@ -29,7 +29,8 @@ pub fn check_folds(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), R
     }
 }
 
-/// How far the edges that a patch, not yet committed, makes or changes are beyond a cosine, summed, before and after.
+/// Sums by how much the cosines at the edges that a patch, not yet committed, makes or changes fall below a given one,
+/// before and after.
 ///
 /// O(faces * (log faces + valence)), with the smaller valence of a side's ends.
 #[must_use]
@@ -48,7 +49,7 @@ pub fn fold_amount(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
     [sum(&patch.removed, false), sum(&patch.added, true)]
 }
 
-/// Whether the normals of the two faces at an edge have a cosine below the given one; false for other edges. O(valence).
+/// True where the normals of the two faces at an edge have a cosine below the given one; false for other edges. O(valence).
 #[must_use]
 pub fn is_folded(live: &LiveMesh, edge: u32, cosine: f64) -> bool {
     let Some([a, b]) = live.edge(edge) else {
@@ -131,13 +132,13 @@ struct Facet {
     normal: DVec3,
 }
 
-/// Whether a face is one that a patch removes.
+/// Tells the faces that a patch removes.
 fn changed(patch: &Patch) -> impl Fn(u32) -> bool {
     |id| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok()
 }
 
-/// Most faces that are looked through for the neighbours of one; beyond that sides are sorted, so that the faces around
-/// a hub do not cost their square.
+/// Most faces that are compared for the neighbours of one; beyond that sides are sorted, so that the faces around a hub do
+/// not cost their square.
 const FEW: usize = 48;
 
 /// The faces of a patch, before it or after.
@@ -224,7 +225,7 @@ fn beside(
     (beside.next(), beside.next().is_none())
 }
 
-/// Whether a face runs along a side in its direction; `None` where the side is not its own.
+/// True where a face runs along a side in its direction; `None` where the side is not its own.
 #[inline]
 fn along(corners: [u32; 3], [a, b]: [u32; 2]) -> Option<bool> {
     let at = corners.iter().position(|&v| v == a)?;

@@ -10,7 +10,7 @@ use crate::{
     num::{Frame, Precision},
 };
 
-/// What a history belongs to.
+/// The run that a history belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// Version of the crate that recorded it.
@@ -27,7 +27,7 @@ pub struct Header {
     pub stride: u32,
 }
 
-/// What a record says about its patch; everything else follows from the mesh before it.
+/// Ids and values of a patch; everything else follows from the mesh before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Record {
     /// The edge `(keep, gone)` collapses: `gone` becomes `keep`, which moves.
@@ -73,7 +73,7 @@ pub struct History {
 /// Everything of a record.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<'a> {
-    /// What it says.
+    /// Ids and values of its patch.
     pub record: Record,
     /// The wedge of the vertex that moved in every face that has it afterwards, by ascending face id; empty without
     /// attributes, and for a flip.
@@ -83,7 +83,7 @@ pub struct Entry<'a> {
 }
 
 impl History {
-    /// What it belongs to.
+    /// The run it belongs to.
     #[must_use]
     pub fn header(&self) -> &Header {
         &self.header
@@ -146,7 +146,7 @@ impl Recorder {
         }
     }
 
-    /// What was recorded, with the resolved options of the run (JSON).
+    /// The history, with the resolved options of the run (JSON).
     #[must_use]
     pub fn finish(self, options: String) -> History {
         let Self { mut history } = self;

@@ -1,4 +1,4 @@
-//! Which collapses are allowed, and where: topology, features, locks, and the shape of the faces that stay.
+//! The rules of a legal collapse and its place: topology, features, locks, and the shape of the faces that stay.
 //!
 //! Topology: the link condition of Dey, Edelsbrunner, Guha & Nekhayev 1999 for 2-complexes, which assumes no
 //! manifold: edges that have not exactly two faces (boundaries, fins) form a graph that a collapse must preserve too.
@@ -14,7 +14,7 @@ use super::{
     edge_star::{Anchor, normal},
 };
 
-/// Whether collapses may change the topology.
+/// Treatment of the topology by collapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
@@ -25,10 +25,10 @@ pub enum Topology {
     Free,
 }
 
-/// What a collapse may do.
+/// Limits of a collapse.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
-    /// Whether the topology may change.
+    /// Treatment of the topology.
     pub topology: Topology,
     /// Smallest cosine between the normals of a face before and after one collapse, in [0, 1).
     pub normal_cosine: f64,
@@ -53,12 +53,12 @@ impl Default for Rules {
     }
 }
 
-/// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; looking at
-/// all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit. A
+/// Most faces around an edge that may collapse. A file of a megabyte can hold a vertex with 30,000 faces; to
+/// visit all of them for each of its edges would take hours. Collapses at the rim bring such a vertex below the limit. A
 /// method may have a lower one: [`Plan::star_limit`](super::Plan::star_limit).
 pub const STAR_LIMIT: usize = 512;
 
-/// Where the rules that do not depend on the new position allow the new vertex.
+/// Finds the places that the rules which do not depend on the new position leave to the new vertex.
 ///
 /// # Errors
 /// The first rule that forbids the collapse altogether.

@@ -26,9 +26,9 @@ impl Admitted {
 pub struct Site<'a> {
     /// The mesh.
     pub live: &'a LiveMesh,
-    /// What lies around the edge.
+    /// The faces around the edge.
     pub star: &'a EdgeStar,
-    /// Where the rules let the new vertex be.
+    /// Places that the rules leave to the new vertex.
     pub anchor: Anchor,
     /// The rules.
     pub rules: Rules,
@@ -80,7 +80,7 @@ impl<'a> Site<'a> {
 /// A collapse as a method proposes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proposal {
-    /// Where the new vertex lies.
+    /// Place of the new vertex.
     pub position: Admitted,
     /// First key of the order of collapses, an exact integer that may be negative; 0 for methods that need none.
     pub primary: i64,
@@ -104,7 +104,7 @@ pub struct Plan {
     /// Most faces around an edge that may collapse, at most [`STAR_LIMIT`]: fewer where evaluations are dear or would
     /// be refused anyway.
     pub star_limit: usize,
-    /// Whether an edge is evaluated roughly before it comes to the front of the queue.
+    /// Evaluate an edge roughly before it comes to the front of the queue.
     pub rough_first: bool,
     /// Number of edges that wait under an estimate and are evaluated together, on all threads, when the first of them
     /// comes to the front; 1 where evaluations are too short to be shared.
@@ -148,7 +148,7 @@ pub trait Estimates: Sync {
     /// The second key of an edge's collapse if no rule forbade its best place; `None` where the sums do not tell.
     fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64>;
 
-    /// Whether the estimate of an edge that does not end at the new vertex may have fallen by the last commit; one that
+    /// True where the last commit may have lowered the estimate of an edge that does not end at the new vertex; one that
     /// rose is noticed in time at the front of the queue.
     fn may_fall(&self, live: &LiveMesh, edge: u32) -> bool;
 }
@@ -157,7 +157,7 @@ pub trait Estimates: Sync {
 ///
 /// Nothing has a default, so that a method around another one cannot forget to forward.
 pub trait Method: Send + Sync {
-    /// How evaluations are scheduled.
+    /// Constants of the schedule.
     fn plan(&self) -> Plan;
 
     /// The costs that can be had without an evaluation, for methods that keep sums.

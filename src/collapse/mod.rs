@@ -10,8 +10,8 @@
 //! 2. Where its key is not exact, `engine/evaluator` gathers its [`EdgeStar`] from the lists of the mesh (`live`).
 //! 3. [`Site::new`] asks [`legality`] where the rules allow the new vertex at all.
 //! 4. [`Method::propose`] places it; [`Site::admit`] rounds it to the file's precision and tests shapes and folds
-//!    (`fold`); the method prices the collapse, from its [`Patch`] where it looks at pictures. The edge goes back to
-//!    the queue under the exact key.
+//!    (`fold`); the method prices the collapse, from its [`Patch`] where the cost needs the faces afterwards. The edge
+//!    goes back to the queue under the exact key.
 //! 5. At the front again, the star becomes the [`Patch`] that is committed: faces that go, faces that come, and the
 //!    wedges of the new vertex (`wedge`).
 //! 6. [`Method::review`] has the last word, then [`LiveMesh::apply`] changes the lists.

@@ -112,7 +112,7 @@ impl Patch {
         true
     }
 
-    /// What takes a patch back that moves or flips: faces and position as before. Rows that it appended stay unused.
+    /// The patch that takes back one that moves or flips: faces and position as before. Rows that it appended stay unused.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {

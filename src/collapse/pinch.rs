@@ -1,6 +1,6 @@
 //! Pinched vertices: sheets that touch there in a point and hang together through no edge.
 
-/// Faces at a vertex that are looked through for their neighbours; beyond that a forest is built.
+/// Most faces at a vertex that are compared pair by pair; for more a forest is built.
 const FEW: usize = 16;
 
 /// True where the faces at a vertex, given by their sides across from it, do not hang together through edges at the

@@ -42,7 +42,7 @@ macro_rules! refusals {
 }
 
 refusals! {
-    /// More than [`STAR_LIMIT`](super::legality::STAR_LIMIT) faces touch the edge, or than the method looks at.
+    /// More than [`STAR_LIMIT`](super::legality::STAR_LIMIT) faces touch the edge, or than the method's plan allows.
     Valence => "valence",
     /// Nothing would be left of the mesh.
     LastTriangle => "last-triangle",
@@ -83,7 +83,7 @@ pub struct Reason {
     pub index: usize,
     /// The name in reports.
     pub name: &'static str,
-    /// Whether an error would exceed the bound that the user gave.
+    /// True where an error would exceed the bound that the user gave.
     pub is_bound: bool,
 }
 
@@ -139,7 +139,7 @@ impl Refusals {
             .filter(|&(_, count)| count > 0)
     }
 
-    /// Whether the bound that the user gave refused anything.
+    /// True where the bound that the user gave refused anything.
     #[must_use]
     pub fn by_bound(&self) -> bool {
         self.own.iter().flatten().any(|reason| reason.is_bound)

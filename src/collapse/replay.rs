@@ -10,7 +10,7 @@ use crate::{
     mesh::{Mesh, content_digest},
 };
 
-/// What it takes to undo a record.
+/// State that a record changes, to undo it.
 #[derive(Clone, Copy, Debug)]
 struct Undo {
     faces_end: usize,

@@ -1,4 +1,4 @@
-//! Everything around a vertex: what a move of it changes, where it may go, and what becomes of its attributes.
+//! The star of a vertex: the faces that a move of it changes, the directions it may take, and its new attributes.
 //!
 //! A vertex inside a sheet or on a boundary may go anywhere its faces let it. One on a feature (a seam, a border of
 //! materials) moves along its normal only: pictures do not show where textures lie, so nothing would judge a sideways
@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{mesh::ChannelKind, num::math};
 
-/// Where a vertex may go.
+/// Directions in which a vertex may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Freedom {
     /// Nowhere.
@@ -41,14 +41,14 @@ pub struct Star {
     pub faces: Vec<PatchFace>,
     /// Its neighbours and the number of faces at the edge to each, ascending ids.
     pub neighbors: Vec<(u32, u32)>,
-    /// Where it may go.
+    /// Directions in which it may move.
     pub freedom: Freedom,
     sides: Vec<u32>,
     values: Vec<f64>,
 }
 
 impl Star {
-    /// Collects what lies around `vertex`.
+    /// Collects the star of `vertex`.
     ///
     /// O(faces log faces) for a usual vertex; allocates only while buffers grow.
     ///

@@ -3,7 +3,7 @@
 use super::{BoundaryEdge, EdgeStar, Spoke, StarFace, normal};
 use crate::collapse::{LiveMesh, wedge};
 
-/// Most faces of a star that is looked through; beyond that it is sorted, so that the faces around a hub do not cost
+/// Most faces of a star that are compared one by one; more are sorted, so that the faces around a hub do not cost
 /// their square.
 const FEW: usize = 48;
 

@@ -77,7 +77,7 @@ pub struct Spoke {
     pub faces: [u32; 2],
     /// True where it forms a face with both ends.
     pub beside: bool,
-    /// Whether the edges to the ends are features.
+    /// Features among the edges to the ends.
     pub feature: [bool; 2],
 }
 

@@ -34,14 +34,14 @@ pub enum Stop {
     ErrorLimit,
     /// No edge may be collapsed any more.
     NoLegalCollapse {
-        /// How many of the edges that are left each rule blocks.
+        /// Number of the edges left that each reason blocks.
         refusals: Refusals,
     },
     /// The input already had no more triangles than wanted; it is returned as it is.
     TargetAboveInput,
 }
 
-/// Collapses between two looks at the progress.
+/// Collapses between two reports of progress.
 const REPORT_EVERY: u64 = 256;
 
 /// A mesh and the queue of its collapses.
@@ -246,8 +246,8 @@ impl Engine {
         queue.next_round();
         let spokes = self.star.spokes.iter().map(|s| s.vertex);
         for v in std::iter::once(vertex).chain(spokes) {
-            // No collapse makes such a vertex: its edges were never evaluated as legal, and are looked at again with the
-            // collapse that brings the vertex below the limit.
+            // No collapse makes such a vertex: its edges were never evaluated as legal, and are evaluated again with
+            // the collapse that brings the vertex below the limit.
             if self.live.valence(v) > self.plan.star_limit {
                 continue;
             }

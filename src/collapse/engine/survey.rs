@@ -10,7 +10,7 @@ use crate::{
 /// Edges in a task.
 const CHUNK: usize = 1024;
 
-/// Tasks between two looks at the progress.
+/// Tasks between two reports of progress.
 const TASKS: usize = 64;
 
 impl Engine {

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-/// Elements of a list beyond which it is not looked through to remove one: a hub may have a million.
+/// Elements of a list up to which it is searched one by one to remove one: a hub may have a million.
 const LONG: u32 = 1024;
 
 /// Room that every list starts with beyond its first elements.

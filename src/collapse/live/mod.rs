@@ -21,7 +21,7 @@ use crate::{
 /// No vertex, face, wedge, edge or corner.
 pub const NONE: u32 = u32::MAX;
 
-/// Edges at one end of an edge that are looked through without a look at the other end.
+/// Edges at one vertex up to which they are searched for another vertex without counting those at the other.
 const FEW: usize = 32;
 
 /// An edge: its ends and its number of faces.

@@ -12,7 +12,7 @@ pub(super) struct Cut {
     pub(super) vertices: Vec<u32>,
     /// The faces that have all their vertices in it.
     pub(super) faces: Vec<u32>,
-    /// Which of its vertices have faces elsewhere.
+    /// True for those of its vertices that have faces elsewhere.
     pub(super) frozen: Vec<bool>,
 }
 

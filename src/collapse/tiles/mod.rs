@@ -64,7 +64,7 @@ impl Default for Tiling {
     }
 }
 
-/// What a run in tiles is asked for.
+/// Options of a run in tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileOptions {
     /// Sizes of tiles.
