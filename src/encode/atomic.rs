@@ -15,6 +15,17 @@ use crate::{Error, Result};
 /// # Errors
 /// [`Error::Io`] where the folder or file cannot be written, or `content` says so.
 pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut content = Some(content);
+    replace(path, &mut |file| {
+        content.take().map_or(Ok(()), |content| content(file))
+    })
+}
+
+/// What gives a file its content, called once.
+type Content<'a> = &'a mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
+
+/// [`write()`] without a type of its own for every content.
+fn replace(path: &Path, content: Content<'_>) -> Result<()> {
     let failed = |source| Error::io("write", path, source);
     // Replacing a link would leave its target behind with the old content.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
@@ -70,7 +81,7 @@ fn replaceable(target: &Path) -> io::Result<Option<fs::Metadata>> {
     Ok(Some(found))
 }
 
-fn fill(file: &mut File, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn fill(file: &mut File, content: Content<'_>) -> io::Result<()> {
     let mut buffered = BufWriter::with_capacity(1 << 16, file);
     content(&mut buffered)?;
     buffered.flush()

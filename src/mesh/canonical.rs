@@ -201,7 +201,7 @@ fn attributes(attributes: &Attributes, triangles: &[Placed]) -> Attributes {
             [0, 1, 2].map(|i| (t.vertices[i], wedges[i]))
         })
         .collect();
-    let united = group_equal(corners.len(), |a, b| {
+    let united = group_equal(corners.len(), &|a, b| {
         let ((v, x), (w, y)) = (corners[a], corners[b]);
         v.cmp(&w).then_with(|| {
             if x == y {

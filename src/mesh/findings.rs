@@ -261,7 +261,7 @@ fn duplicate_positions(mesh: &Mesh) -> Finding {
         // -0 is the same place as +0.
         [p.x + 0.0, p.y + 0.0, p.z + 0.0]
     };
-    let united = group_equal(mesh.positions().len(), |a, b| {
+    let united = group_equal(mesh.positions().len(), &|a, b| {
         compare_rows(&place(a), &place(b))
     });
     repeats(&united.groups, &united.firsts)
@@ -277,7 +277,7 @@ fn duplicate_triangles(mesh: &Mesh) -> Finding {
             set
         })
         .collect();
-    let united = group_equal(sets.len(), |a, b| sets[a].cmp(&sets[b]));
+    let united = group_equal(sets.len(), &|a, b| sets[a].cmp(&sets[b]));
     let mut finding = Finding::default();
     for (t, &group) in united.groups.iter().enumerate() {
         let [a, b, c] = sets[t];

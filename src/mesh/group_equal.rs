@@ -15,7 +15,7 @@ pub(crate) struct EqualGroups {
 /// threads; fewer than 2^32 groups.
 pub(crate) fn group_equal(
     count: usize,
-    compare: impl Fn(usize, usize) -> Ordering + Sync + Copy,
+    compare: &(dyn Fn(usize, usize) -> Ordering + Sync),
 ) -> EqualGroups {
     let mut order: Vec<usize> = (0..count).collect();
     parallel::sort_numbers(&mut order, &|a, b| compare(a, b).then(a.cmp(&b)));
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn groups_are_numbered_by_their_first_members() {
         let items = [7, 3, 7, 1, 3];
-        let found = group_equal(items.len(), |a, b| items[a].cmp(&items[b]));
+        let found = group_equal(items.len(), &|a, b| items[a].cmp(&items[b]));
         assert_eq!(found.groups, [0, 1, 0, 2, 1]);
         assert_eq!(found.firsts, [0, 1, 3]);
     }

@@ -27,7 +27,7 @@ pub fn weld(mesh: Mesh) -> Welded {
         .iter()
         .map(|p| [p.x + 0.0, p.y + 0.0, p.z + 0.0])
         .collect();
-    let united = group_equal(places.len(), |a, b| {
+    let united = group_equal(places.len(), &|a, b| {
         let (a, b) = (&places[a], &places[b]);
         a[0].total_cmp(&b[0])
             .then(a[1].total_cmp(&b[1]))

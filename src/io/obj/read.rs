@@ -209,7 +209,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
     }
     let mut attributes = Attributes::default();
     if !kinds.is_empty() {
-        let united = group_equal(corners.len(), |a, b| corners[a].cmp(&corners[b]));
+        let united = group_equal(corners.len(), &|a, b| corners[a].cmp(&corners[b]));
         let mut values = Vec::new();
         for &corner in &united.firsts {
             let [v, vt, vn] = corners[corner].map(|i| i as usize);

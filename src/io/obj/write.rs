@@ -171,7 +171,7 @@ impl Listed {
             };
         };
         let wedges: Vec<u32> = attributes.corners().as_flattened().to_vec();
-        let united = group_equal(wedges.len(), |a, b| {
+        let united = group_equal(wedges.len(), &|a, b| {
             if wedges[a] == wedges[b] {
                 return Ordering::Equal;
             }

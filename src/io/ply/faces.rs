@@ -189,7 +189,7 @@ impl<S: Source> Reader<S> {
             })
             .collect();
         let vertices: &[u32] = self.triangles.as_flattened();
-        let united = group_equal(uvs.len(), |a, b| {
+        let united = group_equal(uvs.len(), &|a, b| {
             vertices[a]
                 .cmp(&vertices[b])
                 .then_with(|| compare_rows(&uvs[a], &uvs[b]))
