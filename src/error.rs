@@ -46,6 +46,9 @@ pub enum Error {
     /// The result is valid but short of the target, and the caller asked for strictness.
     #[error("{0}")]
     TargetNotReached(String),
+    /// The caller asked for a proof, and the claim is broken or undecided.
+    #[error("{0}")]
+    NotProven(String),
     /// A promise this crate makes to itself is broken: a bug.
     #[error("internal error: {0}; please report it with the input and the command line")]
     Internal(String),
@@ -58,11 +61,12 @@ pub enum Error {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
-    /// Exit code of the `lodmark` command for this error: 2 usage, 3 bad input, 4 unsupported, 5 I/O,
+    /// Exit code of the `lodmark` command for this error: 1 a claim that is not proven, 2 usage, 3 bad input, 4 unsupported, 5 I/O,
     /// 6 target not reached, 70 internal, 130 interrupted.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::NotProven(_) => 1,
             Self::Usage(_) => 2,
             Self::Input { .. } => 3,
             Self::Unsupported(_) => 4,

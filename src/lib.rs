@@ -81,6 +81,7 @@
 )]
 
 mod error;
+mod front;
 mod parallel;
 mod progress;
 
