@@ -149,7 +149,7 @@ pub fn render_with(
     for (i, view) in framed.views.iter().enumerate() {
         progress.step("render", i as u64, framed.views.len() as u64)?;
         let picture = raster::rgb(&scene, view, &framed);
-        let sums = raster::luma_sums(&scene, view, &framed);
+        let sums = raster::sum_samples(&picture.luma(), framed.samples);
         dropped += picture.dropped;
         images.push(ViewImages {
             luma: raster::mean_luma(&sums, framed.samples),

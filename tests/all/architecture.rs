@@ -72,6 +72,21 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "front",
+        &[
+            "error",
+            "progress",
+            "num",
+            "encode",
+            "mesh",
+            "view",
+            "raster",
+            "metric",
+            "visibility",
+            "bound",
+        ],
+    ),
+    (
         "cli",
         &[
             "error",
@@ -89,6 +104,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "collapse",
             "simplify",
             "selfcheck",
+            "front",
         ],
     ),
 ];
