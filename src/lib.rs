@@ -143,7 +143,11 @@ pub mod visibility;
 mod visibility;
 
 pub use error::{Error, Result};
-pub use mesh::Mesh;
+pub use front::{
+    options, render, render_with, reports, verify, views, visibility, visibility_with,
+};
+pub use mesh::{Attributes, Channel, ChannelKind, Materials, Mesh, MeshParts};
+pub use num::Precision;
 pub use progress::{Progress, Silent};
 
 /// The whole command: reads the arguments of the process and runs them.

@@ -1,4 +1,4 @@
-//! The front door: functions and options of the root that no room has in that form.
+//! The front door: functions and options of the root that no room has in that form, and what their signatures need.
 //!
 //! They compose rooms as the command does and promise what their signatures say; the rooms behind them are free to
 //! change.
@@ -7,5 +7,34 @@ mod render;
 pub mod verify;
 mod visibility;
 
-pub use render::{RenderOptions, Rendering, ViewImages, render, render_with};
+pub use render::{render, render_with};
 pub use visibility::{visibility, visibility_with};
+
+/// Options of everything, each made by a constructor or by default and changed step by step.
+pub mod options {
+    pub use super::render::RenderOptions;
+    pub use crate::visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule};
+}
+
+/// Findings: images, measures, and the account that runs give of themselves.
+pub mod reports {
+    pub use super::render::{Rendering, ViewImages};
+    pub use crate::{num::Grid, visibility::Visibility};
+}
+
+/// Cameras and what they draw, sets of views, and the cells of viewers that guarantees are given for.
+pub mod views {
+    pub use crate::{
+        bound::view_cell::{Shape as CellShape, ViewCell},
+        num::fixed::SubpixelBits,
+        view::{
+            Cull, Eye, Interpolation, Light, Projection, Shading, Specular, View, ViewSet,
+            ViewsName,
+        },
+    };
+
+    /// Reads view cells as the command does.
+    pub use crate::bound::view_cell::file::read as read_cell;
+    /// Reads and writes view files, the schema in which others draw the same images.
+    pub use crate::view::file::{read as read_views, to_json as views_to_json};
+}
