@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, contact_sheet::contact_sheet, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    encode::{png, sheet},
+    encode::png,
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
     view::{self, Cull, Projection, Sphere, ViewSet, ViewsName, frame_of},
@@ -103,7 +103,7 @@ pub(super) fn run(
         let classified = caster.classify(&set, i, [&picture.keys, &rays], terminal)?;
         tally.add(&classified);
         if options.picture.is_some() {
-            pictures.push(colored(&classified));
+            pictures.push((colored(&classified), format!("view {i}")));
         }
     }
     if dropped > 0 {
@@ -117,7 +117,8 @@ pub(super) fn run(
         Verdict::Negative
     };
     if let Some(path) = &options.picture {
-        png::write_rgb(path, &contact_sheet(&pictures)?)?;
+        let columns = columns(pictures.len()) as u32;
+        png::write_rgb(path, &contact_sheet(&pictures, columns)?)?;
     }
     let perspective = set
         .views
@@ -247,15 +248,4 @@ fn require_sheet(set: &ViewSet) -> Result<()> {
         )));
     }
     Ok(())
-}
-
-/// All views side by side.
-fn contact_sheet(pictures: &[Grid<[u8; 3]>]) -> Result<Grid<[u8; 3]>> {
-    let labels: Vec<String> = (0..pictures.len()).map(|i| format!("view {i}")).collect();
-    let tiles: Vec<_> = pictures
-        .iter()
-        .zip(&labels)
-        .map(|(picture, label)| sheet::Tile { picture, label })
-        .collect();
-    sheet::sheet(&tiles, columns(tiles.len()) as u32, sheet::Style::default())
 }

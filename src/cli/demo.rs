@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{Common, Verdict, report, terminal::Terminal};
+use super::{Common, Verdict, contact_sheet::contact_sheet, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    encode::{
-        json, png,
-        sheet::{Style, Tile, sheet},
-    },
+    encode::{json, png},
     io,
-    mesh::{canonical, content_sha256, generate},
-    metric::{appearance::appearance, difference::signed_picture, surface::surface_distance},
-    raster::{self, Grid, Scene},
+    mesh::{Mesh, canonical, content_sha256, generate},
+    metric::{
+        difference::signed_picture,
+        report::{CompareOptions, Judge},
+    },
+    raster::{Grid, Scene},
     simplify::{Amount, MethodOptions, Options as RunOptions, image::Preset, simplify},
-    view::{Sphere, View, ViewSet, frame_of},
+    view::Interpolation,
 };
 
 /// Simplify built-in scenes with every method and draw what became of them
@@ -37,7 +37,10 @@ const SCENES: &[(&str, &str, f64)] = &[
 /// Side of a picture on the sheet, in pixels.
 const SIDE: u32 = 256;
 
-/// Points for the distance between surfaces: enough for three digits.
+/// The view that is drawn, of the 24.
+const VIEW: usize = 17;
+
+/// Points for the distance between surfaces.
 const SAMPLES: u32 = 50_000;
 
 /// One simplified mesh, judged.
@@ -70,11 +73,7 @@ pub(super) fn run(options: &DemoArgs, common: &Common, terminal: &Terminal) -> R
             &mut tiles,
         )?;
     }
-    let labelled: Vec<Tile<'_, u8>> = tiles
-        .iter()
-        .map(|(picture, label)| Tile { picture, label })
-        .collect();
-    let picture = sheet(&labelled, 4, Style::default())?;
+    let picture = contact_sheet(&tiles, 4)?;
     let sheet_file = folder.join("sheet.png");
     png::write_grey(&sheet_file, &picture)?;
     json::write(&folder.join("report.json"), &found)?;
@@ -128,70 +127,71 @@ fn scene(
     };
     let mesh = mesh.ok_or_else(|| Error::Internal(format!("there is no scene {name}")))?;
     let mesh = canonical(&mesh).mesh;
-    let frame = frame_of(&mesh);
-    let framed = mesh.enter_frame(frame);
-    let sphere =
-        Sphere::of_mesh(&framed).ok_or_else(|| Error::Internal("a scene has triangles".into()))?;
-    // The evaluation views at a quarter of their pixels: this should not take long.
-    let judge = ViewSet {
-        width: SIDE,
-        height: SIDE,
-        ..ViewSet::evaluation(&sphere)?
-    };
-    let view = judge.views[17];
-    let original = Scene::of(&framed);
+    let judge = Judge::new(&mesh, &judged_by())?;
     io::write(&folder.join(format!("{name}.{extension}")), &mesh)?;
-    let reference = picture(&original, &view, &judge);
-    let mut pictures = vec![(
-        reference.clone(),
-        format!("{name}  {}", mesh.triangles().len()),
-    )];
-    let mut differences = vec![(reference.map(|_| 255), String::new())];
     let amount = Amount::Ratio(share);
     let methods = [
         by_images(amount),
         RunOptions::memoryless(amount),
         RunOptions::quadric(amount),
     ];
+    let mut results: Vec<(&'static str, Mesh)> = Vec::new();
     for options in methods {
-        let method = options.method.name();
         let outcome = simplify(&mesh, &options, terminal)?;
+        results.push((options.method.name(), outcome.mesh));
+    }
+    let meshes: Vec<&Mesh> = results.iter().map(|(_, mesh)| mesh).collect();
+    let comparison = judge.compare(&meshes, terminal)?;
+    let scenes: Vec<Scene> = meshes.iter().map(|mesh| judge.scene(mesh)).collect();
+    let scenes: Vec<&Scene> = scenes.iter().collect();
+    let pictures = judge.pictures(&scenes, VIEW, Interpolation::Flat)?;
+    let reference = &pictures[0];
+    let triangles_in = mesh.triangles().len();
+    let mut above = vec![(reference.clone(), format!("{name}  {triangles_in}"))];
+    let mut below = vec![(reference.map(|_| 255), String::new())];
+    for (((method, mesh), report), picture) in results
+        .iter()
+        .zip(comparison.candidates)
+        .zip(&pictures[1..])
+    {
         let file = format!("{name}-{method}.{extension}");
-        io::write(&folder.join(&file), &outcome.mesh)?;
-        let result = Scene::of(&outcome.mesh.enter_frame(frame));
-        let looks = appearance(&original, std::slice::from_ref(&result), &judge, terminal)?;
-        let looks = looks
-            .first()
-            .ok_or_else(|| Error::Internal("one candidate, one appearance".into()))?;
-        let distance = surface_distance(&mesh, &outcome.mesh, SAMPLES, terminal)?;
-        let (flat, gouraud) = (looks.flat.total().rms(), looks.gouraud.total().rms());
-        let picture = picture(&result, &view, &judge);
-        differences.push((
-            signed_picture(&reference, &picture, 2)?,
-            "difference, doubled".into(),
-        ));
-        pictures.push((
-            picture,
-            format!(
-                "{method}  {}  rms {flat:.2}",
-                outcome.mesh.triangles().len()
-            ),
-        ));
+        io::write(&folder.join(&file), mesh)?;
+        let errors = report.errors;
+        let (rms_flat, rms_gouraud) = errors
+            .pictures
+            .map(|pictures| (pictures.rms_flat, pictures.rms_gouraud))
+            .ok_or_else(|| Error::Internal("a result that was not drawn".into()))?;
+        let triangles_out = mesh.triangles().len();
+        let difference = signed_picture(reference, picture, 2)?;
+        below.push((difference, "difference, doubled".into()));
+        let label = format!("{method}  {triangles_out}  rms {rms_flat:.2}");
+        above.push((picture.clone(), label));
         found.push(Judged {
             scene: name,
             method,
             file,
-            triangles_in: mesh.triangles().len(),
-            triangles_out: outcome.mesh.triangles().len(),
-            rms_flat: flat,
-            rms_gouraud: gouraud,
-            distance_mean: distance.relative().map(|d| d.mean),
-            content_sha256: content_sha256(&outcome.mesh),
+            triangles_in,
+            triangles_out,
+            rms_flat,
+            rms_gouraud,
+            distance_mean: errors.distances.distance_relative.map(|d| d.mean),
+            content_sha256: content_sha256(mesh),
         });
     }
-    tiles.extend(pictures);
-    tiles.extend(differences);
+    tiles.extend(above);
+    tiles.extend(below);
     Ok(())
+}
+
+/// The evaluation views at a quarter of their pixels, and enough points for three digits: this should not take long.
+fn judged_by() -> CompareOptions {
+    CompareOptions {
+        size: SIDE,
+        distance_samples: Some(SAMPLES),
+        silhouettes: false,
+        folds: false,
+        ..CompareOptions::default()
+    }
 }
 
 /// The recipe for who is in a hurry, so that the demo ends within a minute.
@@ -199,8 +199,4 @@ fn by_images(amount: Amount) -> RunOptions {
     let mut options = RunOptions::image(amount);
     options.method = MethodOptions::Image(Preset::Fast.options());
     options
-}
-
-fn picture(scene: &Scene, view: &View, set: &ViewSet) -> Grid<u8> {
-    raster::mean_luma(&raster::luma_sums(scene, view, set), set.samples)
 }

@@ -13,6 +13,7 @@ mod bound_region;
 mod check;
 mod check_rays;
 mod compare;
+mod contact_sheet;
 mod demo;
 mod golden;
 mod guidance_args;

@@ -29,3 +29,8 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
 pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".into(), |v| format!("{v:.digits$}"))
 }
+
+/// The names of all columns, from a text with `|` between them.
+pub(super) fn head(names: &str) -> Vec<String> {
+    names.split('|').map(String::from).collect()
+}

@@ -11,6 +11,7 @@ pub mod difference;
 mod difference_strip;
 pub mod folds;
 pub mod luma;
+pub mod report;
 pub mod silhouette;
 pub mod surface;
 

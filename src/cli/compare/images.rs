@@ -7,11 +7,10 @@ use serde::Serialize;
 use super::{CompareArgs, Found, has_extension, verdict};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, report, table, terminal::Terminal},
+    cli::{Common, Verdict, contact_sheet::contact_sheet, report, table, terminal::Terminal},
     encode::{
         npy,
         png::{self, Picture},
-        sheet::{Style, Tile, sheet},
     },
     metric::{
         difference::{Comparison, compare},
@@ -21,7 +20,7 @@ use crate::{
     raster::Grid,
 };
 
-/// What a file holds.
+/// The content of a file.
 enum Image {
     Picture(Picture),
     /// Ids or depths.
@@ -169,19 +168,10 @@ fn write_difference(
     }
     };
     let expected = picture(expected)?;
-    let strips = candidates
-        .iter()
-        .map(|c| difference_strip(&expected, &picture(c)?, options.difference_scale()))
-        .collect::<Result<Vec<_>>>()?;
-    let names: Vec<String> = options
-        .candidates
-        .iter()
-        .map(|c| c.display().to_string())
-        .collect();
-    let tiles: Vec<_> = strips
-        .iter()
-        .zip(&names)
-        .map(|(picture, label)| Tile { picture, label })
-        .collect();
-    png::write_rgb(path, &sheet(&tiles, 1, Style::default())?)
+    let mut strips = Vec::new();
+    for (candidate, file) in candidates.iter().zip(&options.candidates) {
+        let strip = difference_strip(&expected, &picture(candidate)?, options.difference_scale())?;
+        strips.push((strip, file.display().to_string()));
+    }
+    png::write_rgb(path, &contact_sheet(&strips, 1)?)
 }

@@ -4,8 +4,9 @@
 //! 2 x 2 samples each, flat and Gouraud. Two images are equal, or it is said where and how much they are not.
 
 mod images;
+mod mesh_table;
 mod meshes;
-mod red_differences;
+mod sheets;
 
 use std::path::{Path, PathBuf};
 

@@ -8,14 +8,10 @@ use crate::{
     Error, Progress, Result,
     mesh::{Mesh, content_sha256},
     metric::{
-        appearance::{flat, image_error_views},
         luma::SquaredError,
-        surface::surface_distance,
+        report::{ImageError, Judge},
     },
-    num::Frame,
-    raster::Scene,
     simplify::{Outcome, Replay},
-    view::{Sphere, ViewSet, frame_of},
 };
 
 /// A level of a method, judged.
@@ -37,118 +33,92 @@ pub(super) struct Level {
     /// As shares of the diagonal of the original's bounding box.
     pub(super) distance_mean: Option<f64>,
     pub(super) distance_max: Option<f64>,
-    /// How much less image error than the first method, in %; `None` for that method itself, and where one of the two
+    /// Image error below that of the first method, in %; `None` for that method itself, and where one of the two
     /// did not reach the level: they are then of different sizes.
     pub(super) less: Option<f64>,
     content_sha256: String,
 }
 
-/// Judges levels, the pictures of all of them at once: the original is drawn only once.
-pub(super) struct Judge<'a> {
-    original: &'a Mesh,
-    frame: Frame,
-    scene: Scene,
-    views: ViewSet,
-    samples: Option<u32>,
-    found: Vec<(Mesh, Level)>,
+/// A level of a run before it is judged.
+pub(super) struct Reached {
+    pub(super) method: &'static str,
+    pub(super) percent: f64,
+    pub(super) target: usize,
+    pub(super) mesh: Mesh,
 }
 
-impl<'a> Judge<'a> {
-    /// Against `original`, in images of `size` x `size` pixels of `per_pixel` x `per_pixel` samples, and at `samples`
-    /// points on each surface.
-    pub(super) fn new(
-        original: &'a Mesh,
-        size: u32,
-        per_pixel: u32,
-        samples: Option<u32>,
-    ) -> Result<Self> {
-        let frame = frame_of(original);
-        let framed = original.enter_frame(frame);
-        let sphere = Sphere::of_mesh(&framed)
-            .ok_or_else(|| Error::Internal("a mesh with triangles has a sphere".into()))?;
-        Ok(Self {
-            original,
-            frame,
-            scene: Scene::of(&framed),
-            views: image_error_views(&sphere, size, per_pixel)?,
-            samples,
-            found: Vec::new(),
-        })
+/// Takes the levels of a run from its history.
+pub(super) fn levels_of(
+    original: &Mesh,
+    outcome: &Outcome,
+    percents: &[f64],
+    targets: &[usize],
+) -> Result<Vec<Reached>> {
+    let mut replay = Replay::new(original, &outcome.history)?;
+    let mut levels = Vec::with_capacity(targets.len());
+    for (&percent, &target) in percents.iter().zip(targets) {
+        replay.seek(target)?;
+        let mesh = match replay.applied() {
+            0 => original.clone(),
+            _ => replay.live().to_mesh()?,
+        };
+        levels.push(Reached {
+            method: outcome.options.method.name(),
+            percent,
+            target,
+            mesh,
+        });
     }
-
-    /// Takes the levels of a run from its history; `each` sees every one.
-    pub(super) fn levels(
-        &mut self,
-        method: &'static str,
-        outcome: &Outcome,
-        percents: &[f64],
-        targets: &[usize],
-        mut each: impl FnMut(f64, &Mesh) -> Result<()>,
-    ) -> Result<()> {
-        let mut replay = Replay::new(self.original, &outcome.history)?;
-        for (&percent, &target) in percents.iter().zip(targets) {
-            replay.seek(target)?;
-            let mesh = match replay.applied() {
-                0 => self.original.clone(),
-                _ => replay.live().to_mesh()?,
-            };
-            each(percent, &mesh)?;
-            let triangles = mesh.triangles().len();
-            let level = Level {
-                method,
-                percent,
-                target,
-                triangles,
-                reached: triangles <= target,
-                image_error: 0.0,
-                rms: 0.0,
-                squared_error: SquaredError {
-                    sum: 0,
-                    pixels: 0,
-                    samples: 1,
-                },
-                distance_mean: None,
-                distance_max: None,
-                less: None,
-                content_sha256: content_sha256(&mesh),
-            };
-            self.found.push((mesh, level));
-        }
-        Ok(())
-    }
-
-    /// Measures all levels.
-    pub(super) fn finish(self, progress: &dyn Progress) -> Result<Vec<Level>> {
-        let scenes: Vec<Scene> = self
-            .found
-            .iter()
-            .map(|(mesh, _)| Scene::of(&mesh.enter_frame(self.frame)))
-            .collect();
-        let errors = flat(&self.scene, &scenes, &self.views, progress)?;
-        drop(scenes);
-        let mut levels: Vec<Level> = Vec::with_capacity(self.found.len());
-        for ((mesh, mut level), errors) in self.found.into_iter().zip(errors) {
-            let total = errors.total();
-            (level.image_error, level.rms, level.squared_error) =
-                (total.root(), total.rms(), total);
-            if let Some(samples) = self.samples {
-                let distance = surface_distance(self.original, &mesh, samples, progress)?;
-                level.distance_mean = distance.relative().map(|d| d.mean);
-                level.distance_max = distance.relative().map(|d| d.max);
-            }
-            let first = levels.first().map(|l| l.method);
-            if first.is_some_and(|first| first != level.method) {
-                let same = levels.iter().find(|l| l.target == level.target);
-                let both = same.filter(|l| l.reached && level.reached);
-                level.less = both.map(|l| less(l.image_error, level.image_error));
-            }
-            levels.push(level);
-        }
-        Ok(levels)
-    }
+    Ok(levels)
 }
 
-/// How much less `error` is than `reference`, in %; 0 where both are 0.
+/// Judges the levels of all methods at once, so that the original is drawn only once.
+pub(super) fn judged(
+    judge: &Judge<'_>,
+    found: &[Reached],
+    progress: &dyn Progress,
+) -> Result<Vec<Level>> {
+    let meshes: Vec<&Mesh> = found.iter().map(|level| &level.mesh).collect();
+    let comparison = judge.compare(&meshes, progress)?;
+    let mut levels: Vec<Level> = Vec::with_capacity(found.len());
+    for (level, report) in found.iter().zip(comparison.candidates) {
+        let errors = report.errors;
+        let ImageError {
+            error: image_error,
+            rms,
+            squared_error,
+            ..
+        } = errors
+            .image_error
+            .ok_or_else(|| Error::Internal("a level without its image error".into()))?;
+        let triangles = level.mesh.triangles().len();
+        let reached = triangles <= level.target;
+        let distance = errors.distances.distance_relative;
+        // The first method is what the others are measured by.
+        let first = levels.first().filter(|first| first.method != level.method);
+        let same = first.and_then(|_| levels.iter().find(|l| l.target == level.target));
+        let less = same
+            .filter(|l| l.reached && reached)
+            .map(|l| less(l.image_error, image_error));
+        levels.push(Level {
+            method: level.method,
+            percent: level.percent,
+            target: level.target,
+            triangles,
+            reached,
+            image_error,
+            rms,
+            squared_error,
+            distance_mean: distance.map(|d| d.mean),
+            distance_max: distance.map(|d| d.max),
+            less,
+            content_sha256: content_sha256(&level.mesh),
+        });
+    }
+    Ok(levels)
+}
+
+/// The share of `reference` that `error` is less, in %; 0 where both are 0.
 fn less(reference: f64, error: f64) -> f64 {
     if error > 0.0 || reference > 0.0 {
         100.0 * (1.0 - error / reference)

@@ -20,7 +20,10 @@ use crate::{
     collapse::Topology,
     io,
     mesh::{Mesh, canonical},
-    metric::surface::DEFAULT_SAMPLES,
+    metric::{
+        report::{CompareOptions, Judge},
+        surface::DEFAULT_SAMPLES,
+    },
     simplify::{
         Amount, MethodOptions, Options as RunOptions, Outcome,
         image::{ImageOptions, Start},
@@ -29,7 +32,7 @@ use crate::{
     },
     visibility::Visibility,
 };
-use judge::{Judge, Level};
+use judge::Level;
 
 /// Compare methods over a range of levels: image error, distance, a table and a chart
 #[derive(Debug, clap::Args)]
@@ -136,6 +139,19 @@ impl LevelsArgs {
         (!self.no_distance).then(|| self.distance_samples.unwrap_or(DEFAULT_SAMPLES))
     }
 
+    /// Equation 5.11 and distances.
+    fn judged_by(&self) -> CompareOptions {
+        CompareOptions {
+            views: None,
+            size: self.size,
+            samples: self.samples,
+            image_error: true,
+            distance_samples: self.distance_samples(),
+            folds: false,
+            ..CompareOptions::default()
+        }
+    }
+
     /// Runs a method down to the last of `targets`; `visibility` was measured before, where it is given.
     fn run(
         &self,
@@ -207,25 +223,19 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
         .iter()
         .map(|p| Amount::Ratio(p / 100.0).triangles(count))
         .collect::<Result<Vec<_>>>()?;
-    let mut judge = Judge::new(
-        &mesh,
-        options.size,
-        options.samples,
-        options.distance_samples(),
-    )?;
-    let mut runs = Vec::new();
+    let judge = Judge::new(&mesh, &options.judged_by())?;
+    let (mut runs, mut reached) = (Vec::new(), Vec::new());
     for &method in &options.methods {
         let outcome = options.run(method, &mesh, &targets, visibility.as_ref(), terminal)?;
-        let name = outcome.options.method.name();
-        judge.levels(name, &outcome, &percents, &targets, |percent, level| {
-            if options.meshes {
-                io::write(&folder.join(format!("{name}-{percent}.ply")), level)?;
-            }
-            Ok(())
-        })?;
+        let levels = judge::levels_of(&mesh, &outcome, &percents, &targets)?;
+        for level in levels.iter().filter(|_| options.meshes) {
+            let name = format!("{}-{}.ply", level.method, level.percent);
+            io::write(&folder.join(name), &level.mesh)?;
+        }
+        reached.extend(levels);
         runs.push(serde_json::json!({ "options": outcome.options, "v_mesh": outcome.v_mesh }));
     }
-    let levels = judge.finish(terminal)?;
+    let levels = judge::judged(&judge, &reached, terminal)?;
     let text = judge::csv(&levels);
     io::atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
     let title = format!("{}, {count} triangles", options.input.display());
@@ -260,17 +270,8 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
 }
 
 fn show(levels: &[Level], means: &[(&'static str, f64)], terminal: &Terminal) {
-    let head = [
-        "method",
-        "level %",
-        "triangles",
-        "image error",
-        "RMS",
-        "mean %",
-        "max %",
-        "less %",
-    ];
-    let mut rows = vec![head.map(String::from).to_vec()];
+    let head = "method|level %|triangles|image error|RMS|mean %|max %|less %";
+    let mut rows = vec![table::head(head)];
     for level in levels {
         if !level.reached {
             terminal.say(&format!(
