@@ -71,7 +71,7 @@ impl Levels for [u8; 3] {
 /// What comparing two images found.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Comparison {
+pub enum ImageComparison {
     /// Same size, same pixels.
     Equal,
     /// Different sizes: width and height of each.
@@ -106,7 +106,7 @@ pub struct PixelDifference {
     pub high: (u32, u32),
 }
 
-impl Comparison {
+impl ImageComparison {
     /// True where nothing differs.
     #[must_use]
     pub fn is_equal(&self) -> bool {
@@ -114,7 +114,7 @@ impl Comparison {
     }
 }
 
-impl fmt::Display for Comparison {
+impl fmt::Display for ImageComparison {
     /// One sentence, such as `2 of 64 pixels differ, first at (3, 4): expected 128, found 130; ...`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -161,10 +161,10 @@ impl fmt::Display for List<'_> {
 
 /// Compares two images; O(pixels).
 #[must_use]
-pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> Comparison {
+pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> ImageComparison {
     let size = |p: &Grid<P>| (p.width(), p.height());
     if size(expected) != size(actual) {
-        return Comparison::Sizes {
+        return ImageComparison::Sizes {
             expected: size(expected),
             actual: size(actual),
         };
@@ -194,7 +194,7 @@ pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> Comparison {
         d.low = (d.low.0.min(at.0), d.low.1.min(at.1));
         d.high = (d.high.0.max(at.0), d.high.1.max(at.1));
     }
-    found.map_or(Comparison::Equal, Comparison::Pixels)
+    found.map_or(ImageComparison::Equal, ImageComparison::Pixels)
 }
 
 /// The signed difference picture: `128 + scale * (actual - expected)` in every channel, clamped to 0..=255.

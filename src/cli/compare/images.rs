@@ -13,7 +13,7 @@ use crate::{
         png::{self, Picture},
     },
     metric::{
-        difference::{Comparison, compare},
+        difference::{ImageComparison, compare},
         difference_strip,
         luma::{SquaredError, squared_error},
     },
@@ -32,7 +32,7 @@ struct Judgement<'a> {
     candidate: &'a Path,
     equal: bool,
     /// Where and how much.
-    comparison: Comparison,
+    comparison: ImageComparison,
     /// Of luma, in levels; null for numbers and where sizes differ.
     rms: Option<f64>,
     psnr: Option<f64>,
@@ -137,13 +137,16 @@ fn judge<'a>(
 }
 
 /// Grey pictures as they are; where one has colours, both in colours.
-fn pictures(expected: &Picture, actual: &Picture) -> Result<(Comparison, Option<SquaredError>)> {
+fn pictures(
+    expected: &Picture,
+    actual: &Picture,
+) -> Result<(ImageComparison, Option<SquaredError>)> {
     let comparison = match (expected, actual) {
         (Picture::Grey(e), Picture::Grey(a)) => compare(e, a),
         _ => compare(&expected.clone().into_rgb(), &actual.clone().into_rgb()),
     };
     let error = match comparison {
-        Comparison::Sizes { .. } => None,
+        ImageComparison::Sizes { .. } => None,
         _ => Some(squared_error(
             &expected.clone().into_luma(),
             &actual.clone().into_luma(),

@@ -10,7 +10,7 @@ use lodmark::{
     Silent,
     mesh::{Edges, Mesh},
     metric::{
-        difference::{Comparison, compare, red_picture, signed_picture},
+        difference::{ImageComparison, compare, red_picture, signed_picture},
         luma::{SquaredError, ViewErrors, squared_error},
         silhouette::silhouette_histogram,
     },
@@ -87,9 +87,9 @@ proptest! {
             }
         }
         match compare(&a, &b) {
-            Comparison::Equal => prop_assert!(differing.is_empty()),
-            Comparison::Sizes { .. } => prop_assert!(false, "the sizes are equal"),
-            Comparison::Pixels(d) => {
+            ImageComparison::Equal => prop_assert!(differing.is_empty()),
+            ImageComparison::Sizes { .. } => prop_assert!(false, "the sizes are equal"),
+            ImageComparison::Pixels(d) => {
                 prop_assert_eq!(d.count, differing.len() as u64);
                 prop_assert_eq!(d.first, (differing[0].0, differing[0].1));
                 prop_assert_eq!(&d.expected, &vec![u32::from(a.at(d.first.0, d.first.1))]);
@@ -146,7 +146,10 @@ fn images_that_cannot_be_compared_are_refused() {
         let error = squared_error(&square, &other, 1).expect_err("sizes differ");
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(error.to_string().contains("2 x 2"), "{error}");
-        assert!(matches!(compare(&square, &other), Comparison::Sizes { .. }));
+        assert!(matches!(
+            compare(&square, &other),
+            ImageComparison::Sizes { .. }
+        ));
         assert!(signed_picture(&square, &other, 1).is_err());
     }
     let nothing = Grid::filled(0, 0, 0_u8);
