@@ -12,6 +12,7 @@ use crate::{
         view_cell::{Shape, ViewCell, file},
     },
     cli::{Common, Verdict, input, report, terminal::Terminal},
+    encode::atomic,
     io,
     mesh::{Mesh, MeshParts},
 };
@@ -87,7 +88,7 @@ pub(super) fn run(
     }
     if svg {
         let text = options.figure(&cell, aperture, directions)?;
-        io::atomic::write(&options.output, |file| file.write_all(text.as_bytes()))?;
+        atomic::write(&options.output, |file| file.write_all(text.as_bytes()))?;
     } else {
         let shells: Vec<Mesh> = options
             .points

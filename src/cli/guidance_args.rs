@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use super::visibility::{finish, parse_cameras};
 use crate::{
-    Result, io,
+    Result,
+    encode::bytes,
     mesh::Mesh,
     simplify::visibility::VisibilityOptions,
     visibility::{MeasureOptions, PartialVisibility, Visibility},
@@ -58,7 +59,7 @@ impl GuidanceArgs {
         let Some(path) = &self.visibility else {
             return Ok(None);
         };
-        let bytes = io::bytes::read(path)?;
+        let bytes = bytes::read(path)?;
         let survey = PartialVisibility::from_bytes(&bytes, path)?;
         finish(path, &survey, mesh).map(Some)
     }

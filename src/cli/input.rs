@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::terminal::Terminal;
 use crate::{
-    Error, Result, io,
+    Error, Result,
+    encode::atomic,
+    io,
     mesh::{self, Mesh},
 };
 
@@ -56,7 +58,7 @@ pub(super) fn require_outputs<'a>(outputs: impl Iterator<Item = &'a PathBuf>) ->
                 path.display()
             )));
         }
-        io::atomic::probe(path)?;
+        atomic::probe(path)?;
         seen.push(place);
     }
     Ok(())

@@ -7,8 +7,7 @@ use clap::ValueEnum;
 use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    encode::{hash, npy, png},
-    io,
+    encode::{atomic, hash, npy, png},
     raster::{self, Scene},
     view::{
         self, Cull, Interpolation, Projection, Shading, Sphere, ViewSet, ViewsName,
@@ -186,7 +185,7 @@ pub(super) fn run(options: &RenderArgs, common: &Common, terminal: &Terminal) ->
         ));
     }
     let scene = view::file::to_json(&set, &hashes)?;
-    io::atomic::write(&options.folder.join("scene.json"), |file| {
+    atomic::write(&options.folder.join("scene.json"), |file| {
         file.write_all(scene.as_bytes())
     })?;
     let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();

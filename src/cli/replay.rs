@@ -6,6 +6,7 @@ use super::{Common, Verdict, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     collapse::{History, Replay},
+    encode::bytes,
     io,
     mesh::{self, content_sha256},
 };
@@ -39,7 +40,7 @@ pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) ->
             .into_iter()
             .flatten(),
     )?;
-    let bytes = io::bytes::read(&options.history)?;
+    let bytes = bytes::read(&options.history)?;
     let history = History::from_bytes(&bytes, &options.history)?;
     // A recorded run welded its input or not; the hash of the content tells which.
     let mesh = [true, false].into_iter().find_map(|weld| {

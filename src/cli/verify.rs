@@ -11,7 +11,7 @@ use crate::{
         verify::{self, AngleReport, Claim, DistanceReport, Property, Record},
         view_cell,
     },
-    io,
+    encode::bytes,
     mesh::{self, Mesh},
 };
 
@@ -142,7 +142,7 @@ fn angles(
     };
     let cell = view_cell::file::read(path)?;
     let record = match &options.bound {
-        Some(path) => Some(Record::from_bytes(&io::bytes::read(path)?, path)?),
+        Some(path) => Some(Record::from_bytes(&bytes::read(path)?, path)?),
         None => None,
     };
     let original = match (&record, &options.bound) {

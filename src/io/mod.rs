@@ -17,7 +17,6 @@ mod summary;
 mod words;
 mod write;
 
-pub use crate::encode::{atomic, bytes};
 pub use format::{Encoding, Format};
 pub use read::{Loaded, read, read_bytes};
 pub use summary::Summary;

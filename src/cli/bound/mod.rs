@@ -17,7 +17,7 @@ use crate::{
         surface::{self, Effort, Given, Measure, Pair, SurfaceBound},
         view_cell::file,
     },
-    io,
+    encode::bytes,
     mesh::{self, Mesh},
     num::Frame,
     simplify::{NearestTriangle, originals},
@@ -216,7 +216,7 @@ impl BoundArgs {
         let Some(path) = &self.correspondence else {
             return Ok(None);
         };
-        let bytes = io::bytes::read(path)?;
+        let bytes = bytes::read(path)?;
         let original = mesh::canonical(reference).mesh;
         let pairs = correspondence::pairs(&bytes, path, &original, low)?.ok_or_else(|| {
             Error::input(

@@ -11,8 +11,7 @@ use crate::{
         view_cell::ViewCell,
     },
     cli::terminal::Terminal,
-    encode::png,
-    io,
+    encode::{atomic, png},
     mesh::Mesh,
     metric::difference_strip,
     num::{
@@ -61,7 +60,7 @@ pub(super) fn write(
         png::write_grey(&folder.join(name), &strip)?;
     }
     let text = view::file::to_json(&set.leave_frame(frame), &[])?;
-    io::atomic::write(&folder.join("views.json"), |file| {
+    atomic::write(&folder.join("views.json"), |file| {
         file.write_all(text.as_bytes())
     })
 }

@@ -18,6 +18,7 @@ use super::{
 use crate::{
     Error, Result,
     collapse::Topology,
+    encode::atomic,
     io,
     mesh::{Mesh, canonical},
     metric::{
@@ -237,10 +238,10 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
     }
     let levels = judge::judged(&judge, &reached, terminal)?;
     let text = judge::csv(&levels);
-    io::atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
+    atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
     let title = format!("{}, {count} triangles", options.input.display());
     let chart = chart::svg(&title, &levels);
-    io::atomic::write(&svg, |file: &mut dyn Write| {
+    atomic::write(&svg, |file: &mut dyn Write| {
         file.write_all(chart.as_bytes())
     })?;
     let means = judge::means(&levels);

@@ -13,6 +13,7 @@ use super::{Common, Verdict, guidance_args::GuidanceArgs, input, report, termina
 use crate::{
     Error, Result,
     collapse::{Schedule, Topology},
+    encode::atomic,
     io,
     mesh::{self, content_sha256},
     simplify::{
@@ -421,7 +422,7 @@ pub(super) fn run(options: &SimplifyArgs, common: &Common, terminal: &Terminal) 
     }
     if let Some(path) = &options.history {
         let bytes = outcome.history.to_bytes();
-        io::atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
+        atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
     }
     options.view_bound.write(&canonical.mesh, &outcome)?;
     let summary = Summary {

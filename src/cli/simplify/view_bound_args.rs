@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf};
 use crate::{
     Error, Result,
     bound::view_cell,
-    io,
+    encode::atomic,
     mesh::Mesh,
     num::math,
     simplify::{Outcome, view_bounded::ViewBoundedOptions},
@@ -117,7 +117,7 @@ impl ViewBoundArgs {
         let (Some(path), Some(map)) = (&self.bound_out, &outcome.correspondence) else {
             return Ok(());
         };
-        io::atomic::write(path, |file: &mut dyn Write| {
+        atomic::write(path, |file: &mut dyn Write| {
             map.write(original, &outcome.mesh, file)
         })
     }

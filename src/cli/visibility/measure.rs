@@ -9,7 +9,7 @@ use super::{chart, merge};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, input, report, terminal::Terminal},
-    encode::npy,
+    encode::{atomic, npy},
     io,
     mesh::{self, Mesh},
     visibility::{
@@ -304,7 +304,7 @@ fn named(path: &Path, extension: &str) -> PathBuf {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    io::atomic::write(path, |file| file.write_all(bytes))
+    atomic::write(path, |file| file.write_all(bytes))
 }
 
 fn tell(numbers: &Numbers<'_>, measurement: &MeasureOptions, steps: &[ConvergenceStep]) {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, input, report, terminal::Terminal},
-    io,
+    encode::{atomic, bytes},
     mesh::Mesh,
     visibility::{PartialVisibility, Visibility},
 };
@@ -60,7 +60,7 @@ pub(in crate::cli) fn run(
 
 /// Reads a survey.
 pub(super) fn read(path: &Path) -> Result<PartialVisibility> {
-    PartialVisibility::from_bytes(&io::bytes::read(path)?, path)
+    PartialVisibility::from_bytes(&bytes::read(path)?, path)
 }
 
 /// The visibility that a survey in a file holds, which must be of `mesh` and of all views.
@@ -80,7 +80,7 @@ pub(in crate::cli) fn finish(
 /// Writes a survey; an existing file is replaced as a whole.
 pub(super) fn write(path: &Path, survey: &PartialVisibility) -> Result<()> {
     let bytes = survey.to_bytes();
-    io::atomic::write(path, |file| file.write_all(&bytes))
+    atomic::write(path, |file| file.write_all(&bytes))
 }
 
 /// What a survey holds, for a report.

@@ -5,12 +5,12 @@ use std::{collections::BTreeMap, fs, path::PathBuf};
 use lodmark::{
     Error,
     encode::{
+        atomic,
         hash::plane_sha256,
         json, npy,
         png::{self, Picture},
         sheet::{Style, Tile, sheet},
     },
-    io::atomic,
     metric::difference_strip,
     raster::Grid,
 };

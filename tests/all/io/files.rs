@@ -4,6 +4,7 @@ use std::fs;
 
 use glam::DVec3;
 use lodmark::{
+    encode::atomic,
     io::{self, Encoding, Format},
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, content_sha256, weld},
     num::Precision,
@@ -122,7 +123,7 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
     let folder = folder();
     let path = folder.path().join("a.ply");
     fs::write(&path, "old").expect("writable");
-    let failed = io::atomic::write(&path, |w| {
+    let failed = atomic::write(&path, |w| {
         w.write_all(&[1; 200_000])?;
         Err(std::io::Error::other("disk full"))
     });
@@ -147,7 +148,7 @@ fn threads_that_write_into_one_folder_lose_no_file() {
             scope.spawn(move || {
                 for i in 0..250 {
                     let name = thread * 250 + i;
-                    io::atomic::write(&path(name), |w| write!(w, "{name}")).expect("written");
+                    atomic::write(&path(name), |w| write!(w, "{name}")).expect("written");
                 }
             });
         }
@@ -182,7 +183,7 @@ fn a_link_and_a_device_are_written_through() {
     io::write(&link, &square()).expect("writes");
     assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
     assert_eq!(io::read(&file).expect("reads").mesh.triangles().len(), 2);
-    io::atomic::write(std::path::Path::new("/dev/null"), |w| w.write_all(b"x")).expect("writes");
+    atomic::write(std::path::Path::new("/dev/null"), |w| w.write_all(b"x")).expect("writes");
     assert!(!fs::metadata("/dev/null").expect("there").is_file());
 }
 
