@@ -11,6 +11,7 @@
 
 mod draw;
 mod pixel_rect;
+mod sample_key;
 mod scene;
 mod unrender;
 
@@ -20,6 +21,7 @@ pub use draw::{
     coverage, depths, ids, keys, luma, luma_sums, mean_luma, mean_rgb, rgb, sum_samples,
 };
 pub use pixel_rect::PixelRect;
+pub use sample_key::SampleKey;
 pub use scene::Scene;
 pub use unrender::{
     Added, BucketEngine, BucketScratch, Change, LayerEngine, LayerScratch, Model, Unrender,

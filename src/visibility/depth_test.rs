@@ -12,10 +12,10 @@
 
 use glam::DVec3;
 
-use super::{UnseenRule, seen_parts::EMPTY};
+use super::UnseenRule;
 use crate::{
     num::fixed::{SubpixelBits, depth},
-    raster::{Grid, Scene},
+    raster::{Grid, SampleKey, Scene},
     view::View,
 };
 
@@ -68,7 +68,7 @@ impl DepthTest {
         rule: UnseenRule,
         scene: &Scene,
         view: &View,
-        keys: &Grid<u64>,
+        keys: &Grid<SampleKey>,
     ) {
         self.rule = rule;
         self.size = keys.width() as i32;
@@ -161,19 +161,19 @@ impl DepthTest {
         !(sides.contains(&1) && sides.contains(&-1))
     }
 
-    fn extend_planes(&mut self, scene: &Scene, keys: &Grid<u64>) {
+    fn extend_planes(&mut self, scene: &Scene, keys: &Grid<SampleKey>) {
         self.slopes.clear();
         let mut center_y = HALF;
         for row in keys.values().chunks(keys.width() as usize) {
             let mut center_x = HALF;
             for &key in row {
                 self.slopes.push(match key {
-                    EMPTY => Slope::flat(f64::INFINITY),
+                    SampleKey::BACKGROUND => Slope::flat(f64::INFINITY),
                     key => {
-                        let corners = scene.triangles()[key as u32 as usize];
+                        let corners = scene.triangles()[key.id() as usize];
                         let corners = corners.map(|v| self.points[v as usize]);
                         Slope::of(corners, center_x, center_y)
-                            .unwrap_or_else(|| Slope::flat((key >> 32) as f64))
+                            .unwrap_or_else(|| Slope::flat(f64::from(key.depth())))
                     }
                 });
                 center_x += PIXEL;
@@ -182,11 +182,11 @@ impl DepthTest {
         }
     }
 
-    fn deepest_neighbors(&mut self, keys: &Grid<u64>) {
+    fn deepest_neighbors(&mut self, keys: &Grid<SampleKey>) {
         let size = self.size as usize;
         let depth = |x: usize, y: usize| match keys.values()[y * size + x] {
-            EMPTY => f64::INFINITY,
-            key => (key >> 32) as f64,
+            SampleKey::BACKGROUND => f64::INFINITY,
+            key => f64::from(key.depth()),
         };
         let around = |i: usize| i.saturating_sub(1)..(i + 2).min(size);
         self.slopes.clear();

@@ -13,9 +13,6 @@ use crate::{
 /// All of a triangle is seen.
 pub(super) const FULL: u16 = 1 << 15;
 
-/// The key of a pixel that shows nothing.
-pub(super) const EMPTY: u64 = u64::MAX;
-
 /// Buffers of one thread.
 #[derive(Clone, Debug)]
 pub(super) struct SeenParts {
@@ -58,8 +55,8 @@ impl SeenParts {
         self.shown.clear();
         self.shown.resize(pieces.scene.triangle_count(), 0);
         for &key in keys.values() {
-            if key != EMPTY {
-                self.shown[key as u32 as usize] += 1;
+            if !key.is_background() {
+                self.shown[key.id() as usize] += 1;
             }
         }
         self.test.prepare(options.unseen, &pieces.scene, view, keys);

@@ -24,7 +24,6 @@ pub use projector::{Projector, ScreenVertex};
 pub use samples::{luma_sums, mean_luma, mean_rgb, sum_samples};
 pub use setup::Setup;
 pub use shade::{FaceGeometry, Shader};
-pub(super) use zbuffer::EMPTY;
 pub use zbuffer::ZBuffer;
 
-use super::{Grid, PixelRect, Scene};
+use super::{Grid, PixelRect, SampleKey, Scene};

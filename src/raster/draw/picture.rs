@@ -3,8 +3,7 @@
 //! The z-buffer finds the triangles; then only those that are seen are shaded, each where it is seen.
 
 use super::{
-    FaceGeometry, Grid, Paint, Projector, Scene, Setup, Shader,
-    zbuffer::{EMPTY, ZBuffer},
+    FaceGeometry, Grid, Paint, Projector, SampleKey, Scene, Setup, Shader, zbuffer::ZBuffer,
 };
 use crate::{
     num::fixed,
@@ -15,8 +14,8 @@ use crate::{
 /// A picture of one view, at sample resolution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture<T> {
-    /// `depth << 32 | id` of the nearest triangle, or `u64::MAX` for the background.
-    pub keys: Grid<u64>,
+    /// The nearest triangle of every sample, and how deep it is there.
+    pub keys: Grid<SampleKey>,
     /// What it looks like there.
     pub tones: Grid<T>,
     /// Triangles that could not be drawn because a coordinate is not finite after the transform.
@@ -35,7 +34,7 @@ fn draw<T: Copy>(
     scene: &Scene,
     view: &View,
     set: &ViewSet,
-    tones: impl FnOnce(&Grid<u64>) -> Grid<T>,
+    tones: impl FnOnce(&Grid<SampleKey>) -> Grid<T>,
 ) -> Picture<T> {
     let mut buffer = ZBuffer::new(parallel::threads());
     buffer.draw(scene, view, set);
@@ -98,15 +97,15 @@ impl<'a> Shading<'a> {
     /// What `tone` makes of the piece that the sample shows, or `background`.
     fn tone<T: Copy>(
         &mut self,
-        key: u64,
+        key: SampleKey,
         (x, y): (i32, i32),
         background: T,
         tone: impl Fn(&Paint, &Setup, i32, i32) -> T,
     ) -> T {
-        let id = key as u32;
-        if key == EMPTY {
+        if key.is_background() {
             return background;
         }
+        let id = key.id();
         if self.id != Some(id) {
             self.id = Some(id);
             self.pieces.clear();
@@ -130,7 +129,7 @@ impl<'a> Shading<'a> {
     /// Every sample of a picture with these keys.
     fn plane<T: Copy>(
         mut self,
-        keys: &Grid<u64>,
+        keys: &Grid<SampleKey>,
         background: T,
         tone: impl Fn(&Paint, &Setup, i32, i32) -> T,
     ) -> Grid<T> {
@@ -154,11 +153,11 @@ impl<'a> Shading<'a> {
     }
 
     /// As [`Shading::plane`] for levels, where every triangle has one.
-    fn levels(mut self, keys: &Grid<u64>, background: u8) -> Grid<u8> {
+    fn levels(mut self, keys: &Grid<SampleKey>, background: u8) -> Grid<u8> {
         const UNKNOWN: u16 = u16::MAX;
         let mut levels = vec![UNKNOWN; self.scene.triangle_count()];
         keys.map(|key| {
-            let shown = (key != EMPTY).then(|| self.scene.triangle_of(key as u32));
+            let shown = (!key.is_background()).then(|| self.scene.triangle_of(key.id()));
             let Some(t) = shown.flatten() else {
                 return background;
             };
@@ -210,17 +209,19 @@ pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
 pub fn ids<T>(picture: &Picture<T>) -> Grid<u32> {
     picture
         .keys
-        .map(|k| if k == EMPTY { 0 } else { k as u32 + 1 })
+        .map(|k| if k.is_background() { 0 } else { k.id() + 1 })
 }
 
 /// Depths of a picture in units of 2^-32; `u32::MAX` for the background.
 #[must_use]
 pub fn depths<T>(picture: &Picture<T>) -> Grid<u32> {
-    picture.keys.map(|k| (k >> 32) as u32)
+    picture.keys.map(SampleKey::depth)
 }
 
 /// Coverage of a picture: 255 where a triangle is, 0 elsewhere.
 #[must_use]
 pub fn coverage<T>(picture: &Picture<T>) -> Grid<u8> {
-    picture.keys.map(|k| if k == EMPTY { 0 } else { 255 })
+    picture
+        .keys
+        .map(|k| if k.is_background() { 0 } else { 255 })
 }

@@ -2,19 +2,16 @@
 //!
 //! Most triangles of a large mesh are smaller than a sample: they are told from their bounding box alone. Small ones
 //! are tested at every sample of the box, without anything that only shading needs; the others go through
-//! [`Setup`](super::Setup). Every way leads to the same keys: the minimum over `depth << 32 | id` is commutative and
+//! [`Setup`](super::Setup). Every way leads to the same keys: the minimum of [`SampleKey`]s is commutative and
 //! associative, so parts of the triangles can be drawn on their own and merged, and neither the number of parts nor
 //! the order of triangles changes a bit.
 
-use super::{Drawn, Grid, Paint, PixelRect, Projector, Scene, projector::ScreenPoint};
+use super::{Drawn, Grid, Paint, PixelRect, Projector, SampleKey, Scene, projector::ScreenPoint};
 use crate::{
     num::fixed::SubpixelBits,
     parallel,
     view::{Cull, View, ViewSet},
 };
-
-/// The key of a sample that nothing covers: behind everything.
-pub(in crate::raster) const EMPTY: u64 = u64::MAX;
 
 /// Triangles below which a picture is not worth splitting into parts.
 const PART: usize = 32_768;
@@ -27,7 +24,7 @@ const SMALL: i32 = 8;
 pub struct ZBuffer {
     limit: usize,
     points: Vec<ScreenPoint>,
-    parts: Vec<Grid<u64>>,
+    parts: Vec<Grid<SampleKey>>,
     dropped: u64,
 }
 
@@ -38,7 +35,7 @@ impl ZBuffer {
         Self {
             limit: threads.max(1),
             points: Vec::new(),
-            parts: vec![Grid::filled(0, 0, EMPTY)],
+            parts: vec![Grid::filled(0, 0, SampleKey::BACKGROUND)],
             dropped: 0,
         }
     }
@@ -50,10 +47,11 @@ impl ZBuffer {
         let (width, height) = (image.x1 as u32, image.y1 as u32);
         let count = scene.triangle_count();
         let parts = count.div_ceil(PART).clamp(1, self.limit);
-        self.parts.resize_with(parts, || Grid::filled(0, 0, EMPTY));
+        self.parts
+            .resize_with(parts, || Grid::filled(0, 0, SampleKey::BACKGROUND));
         for plane in &mut self.parts {
             if (plane.width(), plane.height()) != (width, height) {
-                *plane = Grid::filled(width, height, EMPTY);
+                *plane = Grid::filled(width, height, SampleKey::BACKGROUND);
             }
         }
         let positions = scene.positions();
@@ -100,10 +98,9 @@ impl ZBuffer {
         });
     }
 
-    /// `depth << 32 | id` of the nearest triangle at every sample of the last picture, or `u64::MAX` for the
-    /// background.
+    /// The key of the nearest triangle at every sample of the last picture.
     #[must_use]
-    pub fn keys(&self) -> &Grid<u64> {
+    pub fn keys(&self) -> &Grid<SampleKey> {
         &self.parts[0]
     }
 
@@ -114,7 +111,7 @@ impl ZBuffer {
     }
 
     /// The keys of the last picture, without a copy.
-    pub(super) fn into_keys(mut self) -> Grid<u64> {
+    pub(super) fn into_keys(mut self) -> Grid<SampleKey> {
         self.parts.swap_remove(0)
     }
 }
@@ -126,12 +123,12 @@ fn draw_part(
     projector: &Projector,
     points: &[ScreenPoint],
     range: std::ops::Range<usize>,
-    plane: &mut Grid<u64>,
+    plane: &mut Grid<SampleKey>,
 ) -> u64 {
     let image = projector.image();
     let bits = projector.bits();
     let keys = plane.values_mut();
-    keys.fill(EMPTY);
+    keys.fill(SampleKey::BACKGROUND);
     let mut dropped = 0;
     let triangles = scene.triangles()[range.clone()].iter();
     for (triangle, t) in triangles.zip(range) {
@@ -185,11 +182,11 @@ fn draw_small(
     bounds: PixelRect,
     id: u32,
     stride: i32,
-    keys: &mut [u64],
+    keys: &mut [SampleKey],
 ) -> bool {
     // No depth of the triangle is nearer than its nearest corner.
     let depth_min = a.depth.min(b.depth).min(c.depth);
-    let nearest = u64::from(depth_min) << 32 | u64::from(id);
+    let nearest = SampleKey::new(depth_min, id);
     if bounds.x1 - bounds.x0 == 1
         && bounds.y1 - bounds.y0 == 1
         && keys[bounds.y0 as usize * stride as usize + bounds.x0 as usize] <= nearest
@@ -234,11 +231,11 @@ fn draw_small(
                 let sum = w0 * above[0] + w1 * above[1] + w2 * above[2];
                 // A quotient of two numbers below 2^32 takes the short division of the processor.
                 let depth = if (sum | area) >> 32 == 0 {
-                    u64::from(sum as u32 / area as u32)
+                    sum as u32 / area as u32
                 } else {
-                    (sum / area) as u64
+                    (sum / area) as u32
                 };
-                *key = (*key).min(nearest + (depth << 32));
+                *key = (*key).min(SampleKey::new(depth_min + depth, id));
             }
             w0 += x0;
             w1 += x1;
@@ -253,14 +250,20 @@ fn draw_small(
 
 /// Draws a triangle of any size, clipped where it must be; true where it was dropped.
 #[inline(never)]
-fn draw_any(scene: &Scene, view: &View, projector: &Projector, t: usize, keys: &mut [u64]) -> bool {
+fn draw_any(
+    scene: &Scene,
+    view: &View,
+    projector: &Projector,
+    t: usize,
+    keys: &mut [SampleKey],
+) -> bool {
     let image = projector.image();
     let face = scene.painted(t, projector, Paint::Flat(0));
-    let id = u64::from(scene.id(t));
+    let id = scene.id(t);
     let pieces = face.pieces(projector, view.cull, |setup, _| {
         setup.fragments(image, |x, y, depth| {
             let at = y as usize * image.x1 as usize + x as usize;
-            keys[at] = keys[at].min(u64::from(depth) << 32 | id);
+            keys[at] = keys[at].min(SampleKey::new(depth, id));
         });
     });
     pieces == Drawn::Dropped

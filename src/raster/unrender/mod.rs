@@ -11,7 +11,7 @@ pub use layers::{LayerEngine, LayerScratch};
 
 use glam::DVec3;
 
-use super::{FaceGeometry, Grid, Scene};
+use super::{FaceGeometry, Grid, SampleKey, Scene};
 use crate::view::{Interpolation, ViewSet};
 
 /// A triangle that a change puts into the pictures.
@@ -90,8 +90,8 @@ pub trait Unrender: Send + Sync + Sized + 'static {
     /// The luma of every sample of a view.
     fn luma(&self, view: usize) -> Grid<u8>;
 
-    /// The keys (`depth << 32 | id`) of every sample of a view.
-    fn keys(&self, view: usize) -> Grid<u64>;
+    /// The key of every sample of a view.
+    fn keys(&self, view: usize) -> Grid<SampleKey>;
 }
 
 /// `(y0 - new)^2 - (y0 - old)^2`.

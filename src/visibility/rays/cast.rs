@@ -10,12 +10,10 @@ use crate::{
     Progress, Result,
     mesh::Mesh,
     parallel,
-    raster::Grid,
+    raster::{Grid, SampleKey},
     view::{View, ViewSet},
 };
 
-/// The key of a sample that nothing covers.
-pub(super) const EMPTY: u64 = u64::MAX;
 /// Rows between two looks at the interrupt key.
 const ROWS: u32 = 64;
 
@@ -37,8 +35,8 @@ impl RayCaster {
         }
     }
 
-    /// What the ray through the centre of every sample hits first: `depth << 32 | triangle`, and `u64::MAX` for nothing,
-    /// as [`raster::keys`](crate::raster::keys) has it; depth is `floor(z/w 2^32)` of the exact hit, and of equal depths
+    /// Depth and triangle of the first hit of the ray through the centre of every sample, as
+    /// [`raster::keys`](crate::raster::keys) has them; depth is `floor(z/w 2^32)` of the exact hit, and of equal depths
     /// the lowest triangle is taken. `view` and `set` are in the units of the mesh.
     ///
     /// Exact: the hierarchy chooses which triangles are tested, never what is hit. 3 microseconds per ray for 69,451 triangles, 8 for
@@ -46,11 +44,16 @@ impl RayCaster {
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted).
-    pub fn keys(&self, view: &View, set: &ViewSet, progress: &dyn Progress) -> Result<Grid<u64>> {
+    pub fn keys(
+        &self,
+        view: &View,
+        set: &ViewSet,
+        progress: &dyn Progress,
+    ) -> Result<Grid<SampleKey>> {
         let rays = Rays::new(view, set, &self.positions);
         let (width, height) = (set.width * set.samples, set.height * set.samples);
         let planes = [0, 1].map(|axis| rays.planes(axis, &self.hierarchy));
-        let mut keys = Grid::filled(width, height, EMPTY);
+        let mut keys = Grid::filled(width, height, SampleKey::BACKGROUND);
         let chunk = (ROWS * width).max(1) as usize;
         for (i, rows) in keys.values_mut().chunks_mut(chunk).enumerate() {
             if progress.interrupted() {
@@ -68,7 +71,7 @@ impl RayCaster {
                     );
                     self.hierarchy.candidates(line.as_ref(), |t| {
                         if let Some(hit) = rays.hit(ray, self.triangles[t as usize]) {
-                            *key = (*key).min(u64::from(hit.depth) << 32 | u64::from(t));
+                            *key = (*key).min(SampleKey::new(hit.depth, t));
                         }
                     });
                 }
@@ -145,10 +148,10 @@ mod tests {
             for y in 0..16 {
                 for x in 0..24 {
                     let ray = rays.ray(x, y);
-                    let hits = (0_u64..).zip(mesh.triangles()).filter_map(|(t, &triangle)| {
-                        Some(u64::from(rays.hit(ray, triangle)?.depth) << 32 | t)
+                    let hits = (0..).zip(mesh.triangles()).filter_map(|(t, &triangle)| {
+                        Some(SampleKey::new(rays.hit(ray, triangle)?.depth, t))
                     });
-                    prop_assert_eq!(keys.at(x as u32, y as u32), hits.min().unwrap_or(EMPTY));
+                    prop_assert_eq!(keys.at(x as u32, y as u32), hits.min().unwrap_or(SampleKey::BACKGROUND));
                 }
             }
         }

@@ -14,14 +14,14 @@
 use serde::Serialize;
 
 use super::{
-    cast::{EMPTY, RayCaster},
+    cast::RayCaster,
     claim::{Fault, Pixel, QUANTA},
     grid,
     intersect::Rays,
 };
 use crate::{
     Error, Progress, Result, parallel,
-    raster::Grid,
+    raster::{Grid, SampleKey},
     view::{View, ViewSet},
 };
 
@@ -182,7 +182,7 @@ impl RayCaster {
         &self,
         set: &ViewSet,
         index: usize,
-        [raster, cast]: [&Grid<u64>; 2],
+        [raster, cast]: [&Grid<SampleKey>; 2],
         progress: &dyn Progress,
     ) -> Result<Classified> {
         let size = [set.width * set.samples, set.height * set.samples];
@@ -247,18 +247,18 @@ struct Judge<'a> {
     grid_exact: bool,
 }
 
-fn triangle(key: u64) -> Option<u32> {
-    (key != EMPTY).then_some(key as u32)
+fn triangle(key: SampleKey) -> Option<u32> {
+    (!key.is_background()).then_some(key.id())
 }
 
 impl Judge<'_> {
-    fn row(&self, y: u32, raster: &[u64], cast: &[u64]) -> (Vec<Class>, Vec<Witness>) {
+    fn row(&self, y: u32, raster: &[SampleKey], cast: &[SampleKey]) -> (Vec<Class>, Vec<Witness>) {
         let mut witnesses = Vec::new();
         let classes = (0..)
             .zip(raster.iter().zip(cast))
             .map(|(x, (&shown, &hit))| {
                 if shown == hit {
-                    return if shown == EMPTY {
+                    return if shown.is_background() {
                         Class::Background
                     } else {
                         Class::Equal
@@ -272,9 +272,9 @@ impl Judge<'_> {
                 );
                 let class = self.class(&pixel, shown, hit);
                 if class != Class::Equal {
-                    let side = |key: u64| Shown {
+                    let side = |key: SampleKey| Shown {
                         triangle: triangle(key),
-                        depth: (key >> 32) as u32,
+                        depth: key.depth(),
                         inside: triangle(key).and_then(|id| {
                             let pixels = pixel.outline(id)?.distance;
                             Some((pixels / Shown::UNIT).round_ties_even() as i64)
@@ -295,7 +295,7 @@ impl Judge<'_> {
         (classes, witnesses)
     }
 
-    fn class(&self, pixel: &Pixel<'_>, shown: u64, hit: u64) -> Class {
+    fn class(&self, pixel: &Pixel<'_>, shown: SampleKey, hit: SampleKey) -> Class {
         if self.grid_exact {
             return Class::GridExact;
         }
@@ -325,12 +325,12 @@ impl Judge<'_> {
     }
 
     /// The class of a pixel whose triangle is not disputed, but its depth.
-    fn depth(&self, pixel: &Pixel<'_>, shown: u64, hit: u64) -> Class {
+    fn depth(&self, pixel: &Pixel<'_>, shown: SampleKey, hit: SampleKey) -> Class {
         let Some(outline) = triangle(shown).and_then(|id| pixel.outline(id)) else {
             return Class::Range;
         };
         let [low, high] = outline.depths(TOLERANCE);
-        let [z, exact] = [shown, hit].map(|key| (key >> 32) as f64);
+        let [z, exact] = [shown, hit].map(|key| f64::from(key.depth()));
         let near = z - exact <= QUANTA && exact - z <= QUANTA;
         if near || (z >= low - QUANTA && z <= high + QUANTA) {
             Class::Equal

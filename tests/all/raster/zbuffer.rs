@@ -4,17 +4,17 @@ use glam::DVec3;
 use lodmark::{
     mesh::generate,
     num::fixed::SubpixelBits,
-    raster::{self, Face, FaceGeometry, Grid, Paint, Projector, Scene, Shader, ZBuffer},
+    raster::{self, Face, FaceGeometry, Grid, Paint, Projector, SampleKey, Scene, Shader, ZBuffer},
     view::{Cull, Interpolation, Projection, Shading, Sphere, View, ViewSet},
 };
 use proptest::prelude::*;
 
 /// Keys and luma from every triangle on its own, in the order of the scene.
-fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<u64>, Vec<u8>) {
+fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<SampleKey>, Vec<u8>) {
     let projector = Projector::new(view, set);
     let image = projector.image();
     let shader = Shader::new(view);
-    let mut keys = vec![u64::MAX; (image.x1 * image.y1) as usize];
+    let mut keys = vec![SampleKey::BACKGROUND; (image.x1 * image.y1) as usize];
     let mut luma = vec![set.background; keys.len()];
     for (t, (corners, &id)) in scene.triangles().iter().zip(ids).enumerate() {
         let positions = corners.map(|v| scene.positions()[v as usize]);
@@ -41,7 +41,7 @@ fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<u6
         face.pieces(&projector, view.cull, |setup, paint| {
             setup.fragments(image, |x, y, depth| {
                 let at = (y * image.x1 + x) as usize;
-                let key = u64::from(depth) << 32 | u64::from(id);
+                let key = SampleKey::new(depth, id);
                 if key < keys[at] {
                     keys[at] = key;
                     luma[at] = paint.luma(setup, x, y);
@@ -165,7 +165,7 @@ fn a_reused_buffer_and_any_number_of_parts_give_the_same_picture() {
     let mesh = generate::icosphere(6);
     let scene = Scene::of(&mesh);
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
-    let pictures = |threads: usize| -> Vec<(Grid<u64>, u64)> {
+    let pictures = |threads: usize| -> Vec<(Grid<SampleKey>, u64)> {
         let mut buffer = ZBuffer::new(threads);
         [[90, 70], [16, 16], [90, 70]]
             .iter()

@@ -13,7 +13,7 @@ use lodmark::{
     encode::npy,
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Grid, Scene},
+    raster::{self, Grid, SampleKey, Scene},
     view::{Eye, Projection, Sphere, ViewSet, file, frame_of, sets},
     visibility::{
         self, MeasureOptions,
@@ -86,13 +86,13 @@ fn against_embree(packages: &Path, mesh: &Mesh, set: &ViewSet) -> (Tally, f64) {
             .zip(depths.values())
         {
             if id == 0 {
-                *key = u64::MAX;
-            } else if *key != u64::MAX && face[*key as u32 as usize] == face[id as usize - 1] {
-                let [ours, theirs] = [(*key >> 32) as f64 / 4_294_967_296.0, z].map(distance);
+                *key = SampleKey::BACKGROUND;
+            } else if !key.is_background() && face[key.id() as usize] == face[id as usize - 1] {
+                let [ours, theirs] = [f64::from(key.depth()) / 4_294_967_296.0, z].map(distance);
                 same += 1;
                 far += u64::from((ours - theirs).abs() > 1e-5 * ours);
             } else {
-                *key = ((z * 4_294_967_296.0) as u64) << 32 | u64::from(id - 1);
+                *key = SampleKey::new((z * 4_294_967_296.0) as u32, id - 1);
             }
         }
         let found = caster.classify(set, i, [&drawn, &cast], &Silent);
@@ -174,8 +174,8 @@ fn embree_finds_a_planted_bug() {
     let mut cast = drawn.clone();
     for (key, &id) in cast.values_mut().iter_mut().zip(ids.values()) {
         *key = match id {
-            0 => u64::MAX,
-            id => *key >> 32 << 32 | u64::from(id - 1),
+            0 => SampleKey::BACKGROUND,
+            id => SampleKey::new(key.depth(), id - 1),
         };
     }
     let caster = RayCaster::new(&mesh);

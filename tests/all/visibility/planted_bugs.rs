@@ -5,7 +5,7 @@ use lodmark::{
     Error, Silent,
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Grid, Scene},
+    raster::{self, Grid, SampleKey, Scene},
     view::{Cull, Projection, View, ViewSet},
     visibility::rays::{Class, RayCaster, TOLERANCE, cap},
 };
@@ -58,19 +58,15 @@ const BUGS: [Bug; 8] = [
 
 /// A rasterizer of its own: every pixel against every triangle in `i128`, with a bug. For meshes in front of the near
 /// plane and inside the guard band, without culling.
-fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<u64> {
+fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<SampleKey> {
     let (width, height) = (f64::from(set.width), f64::from(set.height));
     let bits = set.subpixel.bits();
     // Left out is one that shows: that of the pixel in the middle of those which show any.
     let left_out = (bug == Bug::TriangleLeftOut).then(|| {
         let shown = draw(mesh, view, set, Bug::None);
-        let ids: Vec<u64> = shown
-            .values()
-            .iter()
-            .copied()
-            .filter(|&k| k != u64::MAX)
-            .collect();
-        ids[ids.len() / 2] as u32 as usize
+        let seen = shown.values().iter().filter(|k| !k.is_background());
+        let ids: Vec<u32> = seen.map(|k| k.id()).collect();
+        ids[ids.len() / 2] as usize
     });
     let mut keys = Grid::filled(set.width, set.height, u64::MAX);
     let screen: Vec<[i128; 3]> = mesh
@@ -149,7 +145,7 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<u64> {
             }
         }
     }
-    keys
+    keys.map(SampleKey::from_bits)
 }
 
 #[test]
@@ -229,13 +225,13 @@ fn a_difference_is_named_after_what_is_wrong() {
     // The pixel in the middle, far from every edge: the triangle in front has number 1.
     let at = 16 * 32 + 16;
     let near = rays.values()[at];
-    assert_eq!(near, 0x4000_0000 << 32 | 1);
+    assert_eq!(near, SampleKey::new(0x4000_0000, 1));
     for (shown, class) in [
-        (u64::MAX, Class::Hole),
-        (0x8000_0000 << 32, Class::Occluded),
-        (0x4000_0000 << 32 | 2, Class::Range),
-        (0x4000_0009 << 32 | 1, Class::Depth),
-        (0x4000_0002 << 32 | 1, Class::Equal),
+        (SampleKey::BACKGROUND, Class::Hole),
+        (SampleKey::new(0x8000_0000, 0), Class::Occluded),
+        (SampleKey::new(0x4000_0000, 2), Class::Range),
+        (SampleKey::new(0x4000_0009, 1), Class::Depth),
+        (SampleKey::new(0x4000_0002, 1), Class::Equal),
     ] {
         let mut planted = rays.clone();
         planted.values_mut()[at] = shown;
@@ -258,7 +254,7 @@ fn a_difference_is_named_after_what_is_wrong() {
         Class::Rays,
         "the other way round"
     );
-    let small = Grid::filled(31, 32, u64::MAX);
+    let small = Grid::filled(31, 32, SampleKey::BACKGROUND);
     assert!(matches!(
         caster.classify(&set, 0, [&small, &rays], &Silent),
         Err(Error::Usage(_))
@@ -266,7 +262,7 @@ fn a_difference_is_named_after_what_is_wrong() {
 }
 
 /// The class of one pixel where the rasterizer shows `shown` and the rays something else.
-fn class_of(mesh: &Mesh, set: &ViewSet, [x, y]: [u32; 2], shown: u64) -> Class {
+fn class_of(mesh: &Mesh, set: &ViewSet, [x, y]: [u32; 2], shown: SampleKey) -> Class {
     let caster = RayCaster::new(mesh);
     let rays = caster.keys(&set.views[0], set, &Silent).expect("goes on");
     let mut planted = rays.clone();
@@ -290,9 +286,9 @@ fn the_tolerance_ends_where_it_says() {
         let set = grid_set(SubpixelBits::Sixteen, Cull::None);
         // At distance 0 the ray, moved right by a hair, misses.
         let shown = if distance > 0.0 {
-            u64::MAX
+            SampleKey::BACKGROUND
         } else {
-            0x1999_9999 << 32
+            SampleKey::new(0x1999_9999, 0)
         };
         assert_eq!(class_of(&mesh, &set, [16, 16], shown), class, "{distance}");
     }
@@ -309,7 +305,7 @@ fn the_tolerance_ends_where_it_says() {
         let corners = [layer(1_000 + quanta), layer(1_000)].into_iter().flatten();
         let mesh = soup_of(corners.collect());
         let set = grid_set(SubpixelBits::Sixteen, Cull::None);
-        let shown = u64::from(1_000 + quanta) << 32;
+        let shown = SampleKey::new(1_000 + quanta, 0);
         assert_eq!(class_of(&mesh, &set, [16, 16], shown), class, "{quanta}");
     }
     // The same on a slope of a million quanta per pixel: 3,906 of them within the tolerance, for each triangle.
@@ -322,7 +318,7 @@ fn the_tolerance_ends_where_it_says() {
         let mesh = soup_of(corners.collect());
         let set = grid_set(SubpixelBits::Sixteen, Cull::None);
         assert_eq!(
-            class_of(&mesh, &set, [16, 16], 1_000_000 << 32),
+            class_of(&mesh, &set, [16, 16], SampleKey::new(1_000_000, 0)),
             class,
             "{quanta}"
         );
@@ -343,7 +339,11 @@ fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
             soup_of(corners.to_vec()),
             grid_set(SubpixelBits::Sixteen, Cull::None),
         );
-        assert_eq!(class_of(&mesh, &set, [16, 16], 0), class, "{distance}");
+        assert_eq!(
+            class_of(&mesh, &set, [16, 16], SampleKey::new(0, 0)),
+            class,
+            "{distance}"
+        );
     }
     for (cull, class) in [
         (Cull::None, Class::Equal),
@@ -355,7 +355,7 @@ fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
         let mesh = soup_of(corners.to_vec());
         let mut set = grid_set(SubpixelBits::Sixteen, cull);
         assert_eq!(
-            class_of(&mesh, &set, [16, 16], 1_000 << 32),
+            class_of(&mesh, &set, [16, 16], SampleKey::new(1_000, 0)),
             class,
             "{cull:?}"
         );
@@ -366,7 +366,7 @@ fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
         };
         set.views[0].matrix[0][0] = -0.0625;
         assert_eq!(
-            class_of(&mesh, &set, [15, 16], 1_000 << 32),
+            class_of(&mesh, &set, [15, 16], SampleKey::new(1_000, 0)),
             mirrored,
             "{cull:?}"
         );

@@ -5,7 +5,7 @@ use lodmark::{
     Error, Silent,
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
-    raster::{self, Grid, Scene},
+    raster::{self, Grid, SampleKey, Scene},
     view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, frame_of, sets},
     visibility::rays::{Class, RayCaster, Tally},
 };
@@ -34,7 +34,7 @@ pub(crate) fn framed(
 }
 
 /// Every view of `draw` against rays.
-pub(crate) fn tally(mesh: &Mesh, set: &ViewSet, draw: impl Fn(&View) -> Grid<u64>) -> Tally {
+pub(crate) fn tally(mesh: &Mesh, set: &ViewSet, draw: impl Fn(&View) -> Grid<SampleKey>) -> Tally {
     let caster = RayCaster::new(mesh);
     let mut tally = Tally::default();
     for (i, view) in set.views.iter().enumerate() {

@@ -14,7 +14,7 @@ use self::view::{BucketView, PartScratch};
 use super::{Change, Model, Unrender, ViewSubset};
 use crate::{
     parallel,
-    raster::{FaceGeometry, Grid},
+    raster::{FaceGeometry, Grid, SampleKey},
     view::ViewSet,
 };
 
@@ -104,7 +104,7 @@ impl Unrender for BucketEngine {
         self.views[view].luma.clone()
     }
 
-    fn keys(&self, view: usize) -> Grid<u64> {
+    fn keys(&self, view: usize) -> Grid<SampleKey> {
         self.views[view].keys.clone()
     }
 }

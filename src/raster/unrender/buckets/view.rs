@@ -9,8 +9,8 @@ use super::{
 use crate::{
     num::fixed::level,
     raster::{
-        Face, FaceGeometry, Grid, Paint, PixelRect, Projector, ScreenVertex, Setup, Shader,
-        draw::EMPTY,
+        Face, FaceGeometry, Grid, Paint, PixelRect, Projector, SampleKey, ScreenVertex, Setup,
+        Shader,
     },
     view::{Interpolation, View, ViewSet},
 };
@@ -30,7 +30,7 @@ pub(super) struct BucketView {
     /// The pixels every triangle can touch, as it is entered in the buckets.
     extents: Vec<PixelRect>,
     buckets: Buckets,
-    pub(super) keys: Grid<u64>,
+    pub(super) keys: Grid<SampleKey>,
     pub(super) luma: Grid<u8>,
     /// What the picture is compared with: the luma sums of every pixel.
     reference: Grid<u16>,
@@ -46,7 +46,7 @@ pub(super) struct PartScratch {
     shaded: Vec<f64>,
     setups: Vec<(u32, Setup, Paint)>,
     added_extents: Vec<PixelRect>,
-    keys: Vec<u64>,
+    keys: Vec<SampleKey>,
     luma: Vec<u8>,
 }
 
@@ -88,7 +88,7 @@ impl BucketView {
             },
             extents: vec![PixelRect::EMPTY; model.corners.len()],
             buckets: Buckets::new(width, height),
-            keys: Grid::filled(width, height, EMPTY),
+            keys: Grid::filled(width, height, SampleKey::BACKGROUND),
             luma: Grid::filled(width, height, set.background),
             reference,
             background: set.background,
@@ -243,8 +243,8 @@ impl BucketView {
                 .iter()
                 .zip(&self.luma.values()[row]);
             for (x, (&key, &luma)) in (region.x0..).zip(shown) {
-                if key != EMPTY && scratch.stamps.is_left_out(key as u32) {
-                    scratch.keys.push(EMPTY);
+                if !key.is_background() && scratch.stamps.is_left_out(key.id()) {
+                    scratch.keys.push(SampleKey::BACKGROUND);
                     scratch.luma.push(self.background);
                     let pixel = PixelRect {
                         x0: x,
@@ -375,13 +375,13 @@ fn draw(
     paint: &Paint,
     id: u32,
     [within, region]: [PixelRect; 2],
-    keys: &mut [u64],
+    keys: &mut [SampleKey],
     luma: &mut [u8],
 ) {
     let width = region.width();
     setup.fragments(within, |x, y, depth| {
         let at = (y - region.y0) as usize * width + (x - region.x0) as usize;
-        let key = u64::from(depth) << 32 | u64::from(id);
+        let key = SampleKey::new(depth, id);
         if key < keys[at] {
             keys[at] = key;
             luma[at] = paint.luma(setup, x, y);

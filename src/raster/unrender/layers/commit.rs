@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     raster::{
-        Face, Projector, ScreenVertex,
+        Face, Projector, SampleKey, ScreenVertex,
         draw::{
             projector::ScreenPoint,
             small_triangle::{Fit, SmallTriangle},
@@ -28,7 +28,7 @@ impl LayerView {
             let (x, y) = delta.place(at);
             self.recolor(x, y, delta.tones[i]);
             let before = self.lists.shown()[sample].id();
-            delta.swaps.push((before, delta.slots[at as usize] as u32));
+            delta.swaps.push((before, delta.slots[at as usize].id()));
         }
         for i in 0..delta.restyled.len() {
             let ([x, y], tone) = delta.restyled[i];
@@ -53,7 +53,7 @@ impl LayerView {
                 width,
                 |sample, (x, y), depth| {
                     let tile = (y >> TILE) as usize * columns + (x >> TILE) as usize;
-                    lists.insert(sample, tile, u64::from(depth) << 32 | u64::from(after.id));
+                    lists.insert(sample, tile, SampleKey::new(depth, after.id));
                 },
             );
             if self.plain {

@@ -7,6 +7,8 @@
 //! blocks never shrink. Memory: 20 bytes for every sample and 8 to 16 for every fragment that is not the nearest, at the
 //! deepest moment of its sample.
 
+use crate::raster::SampleKey;
+
 /// Samples in a row and column of a tile, as a power of two.
 pub(super) const TILE: u32 = 3;
 
@@ -32,8 +34,8 @@ impl Shown {
 
     /// The least key that the sample may have: the upper half of the depth, and zeros.
     #[inline]
-    pub(super) fn least_key(self) -> u64 {
-        self.0 & 0xffff_0000_0000_0000
+    pub(super) fn least_key(self) -> SampleKey {
+        SampleKey::from_bits(self.0 & 0xffff_0000_0000_0000)
     }
 
     /// The upper half of the depth.
@@ -42,7 +44,8 @@ impl Shown {
         (self.0 >> 48) as u16
     }
 
-    fn set_key(&mut self, key: u64) {
+    fn set_key(&mut self, key: SampleKey) {
+        let key = key.bits();
         self.0 = self.0 & 0x0000_ffff_0000_0000
             | key & 0xffff_0000_0000_0000
             | key & 0x0000_0000_ffff_ffff;
@@ -82,16 +85,16 @@ fn capacity(class: usize) -> usize {
 /// The fragments of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct FragmentLists {
-    nothing: u64,
+    nothing: SampleKey,
     shown: Vec<Shown>,
     /// Depth of what is shown.
     depths: Vec<u32>,
     behind: Vec<Block>,
-    arena: Vec<u64>,
+    arena: Vec<SampleKey>,
     /// Blocks that are not in use, by class.
     free: [Vec<u32>; 32],
     /// A lower bound of the keys that are not the nearest, by tile.
-    bounds: Vec<u64>,
+    bounds: Vec<SampleKey>,
 }
 
 impl FragmentLists {
@@ -102,7 +105,7 @@ impl FragmentLists {
         luma: u8,
         reference: &[u8],
         tiles: usize,
-        nothing: u64,
+        nothing: SampleKey,
     ) -> Self {
         let shown = (0..samples).map(|at| {
             let reference = reference.get(at).copied().unwrap_or(0);
@@ -113,7 +116,7 @@ impl FragmentLists {
         Self {
             nothing,
             shown: shown.collect(),
-            depths: vec![(nothing >> 32) as u32; samples],
+            depths: vec![nothing.depth(); samples],
             behind: vec![Block::default(); samples],
             arena: Vec::new(),
             free: std::array::from_fn(|_| Vec::new()),
@@ -122,7 +125,7 @@ impl FragmentLists {
     }
 
     /// What an empty sample shows.
-    pub(super) fn nothing(&self) -> u64 {
+    pub(super) fn nothing(&self) -> SampleKey {
         self.nothing
     }
 
@@ -134,13 +137,13 @@ impl FragmentLists {
 
     /// The nearest key at a sample.
     #[inline]
-    pub(super) fn nearest(&self, at: usize) -> u64 {
-        u64::from(self.depths[at]) << 32 | u64::from(self.shown[at].id())
+    pub(super) fn nearest(&self, at: usize) -> SampleKey {
+        SampleKey::new(self.depths[at], self.shown[at].id())
     }
 
-    fn set_nearest(&mut self, at: usize, key: u64) {
+    fn set_nearest(&mut self, at: usize, key: SampleKey) {
         self.shown[at].set_key(key);
-        self.depths[at] = (key >> 32) as u32;
+        self.depths[at] = key.depth();
     }
 
     /// Changes the luma of a sample.
@@ -152,21 +155,21 @@ impl FragmentLists {
 
     /// A bound that no key in the tile is below, but for those that are the nearest of their samples.
     #[inline]
-    pub(super) fn bound(&self, tile: usize) -> u64 {
+    pub(super) fn bound(&self, tile: usize) -> SampleKey {
         self.bounds[tile]
     }
 
     /// The nearest key behind the first at a sample whose triangle is not `gone`.
     #[inline]
-    pub(super) fn below(&self, at: usize, gone: impl Fn(u32) -> bool) -> u64 {
+    pub(super) fn below(&self, at: usize, gone: impl Fn(u32) -> bool) -> SampleKey {
         let keys = &self.arena[self.behind[at].range()];
-        let kept = keys.iter().find(|&&key| !gone(key as u32));
+        let kept = keys.iter().find(|&&key| !gone(key.id()));
         kept.copied().unwrap_or(self.nothing)
     }
 
     /// Adds a fragment to a sample of a tile.
     #[inline]
-    pub(super) fn insert(&mut self, at: usize, tile: usize, key: u64) {
+    pub(super) fn insert(&mut self, at: usize, tile: usize, key: SampleKey) {
         let nearest = self.nearest(at);
         let behind = if key < nearest {
             self.set_nearest(at, key);
@@ -182,7 +185,7 @@ impl FragmentLists {
         self.insert_behind(at, behind);
     }
 
-    fn insert_behind(&mut self, at: usize, key: u64) {
+    fn insert_behind(&mut self, at: usize, key: SampleKey) {
         let mut block = self.behind[at];
         if block.len() == capacity(block.class()) {
             block = self.grown(block);
@@ -204,7 +207,8 @@ impl FragmentLists {
         let class = block.class() + 1;
         let start = self.free[class].pop().unwrap_or_else(|| {
             let start = self.arena.len() as u32;
-            self.arena.resize(self.arena.len() + capacity(class), 0);
+            self.arena
+                .resize(self.arena.len() + capacity(class), self.nothing);
             start
         });
         self.arena.copy_within(block.range(), start as usize);
@@ -227,7 +231,7 @@ impl FragmentLists {
         for i in 0..keys.len() {
             let key = keys[i];
             keys[kept] = key;
-            kept += usize::from(key as u32 != id);
+            kept += usize::from(key.id() != id);
         }
         let mut first = 0;
         if self.shown[at].id() == id {
@@ -254,27 +258,27 @@ mod tests {
             steps in proptest::collection::vec((0..3_usize, 0..6_u32, 0..9_u32, any::<bool>()), 0..200),
             gone in proptest::collection::vec(0..6_u32, 0..4),
         ) {
-            let nothing = u64::from(u32::MAX) << 32 | 99;
+            let nothing = SampleKey::new(u32::MAX, 99);
             let mut lists = FragmentLists::new(3, 9, &[1, 2, 3], 1, nothing);
             lists.set_luma(0, 7);
-            let mut expected = vec![Vec::<u64>::new(); 3];
+            let mut expected = vec![Vec::<SampleKey>::new(); 3];
             for (at, id, depth, insert) in steps {
-                let key = u64::from(depth) << 47 | u64::from(id);
+                let key = SampleKey::new(depth << 15, id);
                 if insert {
                     lists.insert(at, 0, key);
                     expected[at].push(key);
                 } else {
                     lists.remove(at, id);
-                    expected[at].retain(|&k| k as u32 != id);
+                    expected[at].retain(|&k| k.id() != id);
                 }
                 for (at, keys) in expected.iter_mut().enumerate() {
                     keys.sort_unstable();
                     let nearest = keys.first().copied().unwrap_or(nothing);
                     prop_assert_eq!(lists.nearest(at), nearest);
                     let shown = lists.shown()[at];
-                    prop_assert_eq!(shown.least_key(), nearest >> 48 << 48);
+                    prop_assert_eq!(shown.least_key(), SampleKey::from_bits(nearest.bits() >> 48 << 48));
                     prop_assert_eq!([shown.luma(), shown.reference()], [[7, 9, 9][at], 1 + at as u8]);
-                    let below = keys.iter().skip(1).find(|&&k| !gone.contains(&(k as u32)));
+                    let below = keys.iter().skip(1).find(|&&k| !gone.contains(&k.id()));
                     prop_assert_eq!(lists.below(at, |id| gone.contains(&id)), below.copied().unwrap_or(nothing));
                     prop_assert!(keys.iter().skip(1).all(|&k| k >= lists.bound(0)));
                 }

@@ -62,18 +62,19 @@ impl HiZ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raster::SampleKey;
     use crate::raster::unrender::layers::fragment_lists::FragmentLists;
 
     #[test]
     fn only_what_is_behind_every_sample_of_its_squares_is_hidden() {
         let image = PixelRect::image(10, 7); // squares at the right and below are cut off
-        let nothing = u64::from(u32::MAX) << 32;
+        let nothing = SampleKey::new(u32::MAX, 0);
         let mut lists = FragmentLists::new(70, 0, &[], 4, nothing);
         let mut hi_z = HiZ::new(image);
         let depth = |at: usize| (at as u32 * 7 % 70 + 1) << 16 | 5;
         for at in 0..70 {
             assert!(!hi_z.hides(image, u32::MAX), "the background is deepest");
-            lists.insert(at, 0, u64::from(depth(at)) << 32);
+            lists.insert(at, 0, SampleKey::new(depth(at), 0));
             hi_z.measure(image, image, lists.shown());
         }
         for (x0, y0) in (0..70).map(|at| (at % 10, at / 10)) {

@@ -21,7 +21,11 @@ use self::{
     view::{LayerView, ProbeContext},
 };
 use super::{Change, Model, Unrender, ViewSubset};
-use crate::{parallel, raster::Grid, view::ViewSet};
+use crate::{
+    parallel,
+    raster::{Grid, SampleKey},
+    view::ViewSet,
+};
 
 /// Views that a part has bits for.
 const MOST_VIEWS: usize = 64;
@@ -359,7 +363,7 @@ impl Unrender for LayerEngine {
         self.plane(self.view(view).luma())
     }
 
-    fn keys(&self, view: usize) -> Grid<u64> {
+    fn keys(&self, view: usize) -> Grid<SampleKey> {
         self.plane(self.view(view).keys())
     }
 }

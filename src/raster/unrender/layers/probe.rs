@@ -12,7 +12,7 @@ use super::{
     view::{LayerView, ProbeContext},
 };
 use crate::raster::{
-    Face, Paint, PixelRect, ScreenVertex, Setup,
+    Face, Paint, PixelRect, SampleKey, ScreenVertex, Setup,
     draw::small_triangle::{Covered, Fit, SmallTriangle},
 };
 
@@ -34,7 +34,7 @@ pub(super) struct ViewDelta {
     entered: bool,
     /// What a key must be below to be seen at a pixel of the region. Pixels that still show what they did, or what
     /// was behind: a lower bound of that; others: the nearest fresh key. After the look the keys of touched pixels.
-    pub(super) slots: Vec<u64>,
+    pub(super) slots: Vec<SampleKey>,
     /// By pixel: 0 as before, 1 what was behind, more is a piece.
     who: Vec<u32>,
     /// Pixels of the region that show something else, and their luma afterwards.
@@ -172,7 +172,7 @@ impl LayerView {
 
     /// Whether a fresh key is seen at a pixel, where [`ViewDelta::may_win`] has not ruled it out.
     #[inline]
-    fn wins(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32, key: u64) -> bool {
+    fn wins(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32, key: SampleKey) -> bool {
         key < delta.slots[at as usize] || self.wins_exactly(context, delta, at, key)
     }
 
@@ -182,7 +182,7 @@ impl LayerView {
         context: &ProbeContext<'_>,
         delta: &ViewDelta,
         at: u32,
-        key: u64,
+        key: SampleKey,
     ) -> bool {
         match delta.who[at as usize] {
             0 => key < self.lists.nearest(delta.sample(at, self.width)),
@@ -193,7 +193,7 @@ impl LayerView {
 
     /// The key that a pixel shows when the triangles that go are gone and nothing comes.
     #[inline]
-    fn behind(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32) -> u64 {
+    fn behind(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32) -> SampleKey {
         let sample = delta.sample(at, self.width);
         self.lists.below(sample, |id| context.changes.goes(id))
     }
@@ -259,7 +259,7 @@ impl LayerView {
         let mut any = false;
         for j in 0..covered {
             let (at, above) = (delta.covered.at[j], delta.covered.above[j]);
-            let key = u64::from(small.depth(above)) << 32 | u64::from(id);
+            let key = SampleKey::new(small.depth(above), id);
             if delta.may_win(at, key) && self.wins(context, delta, at, key) {
                 delta.win(at, key, number);
                 any = true;
@@ -281,7 +281,7 @@ impl LayerView {
         let mut any = false;
         setup.fragments(region, |x, y, depth| {
             let at = ((y - region.y0) as u32) << delta.shift | (x - region.x0) as u32;
-            let key = u64::from(depth) << 32 | u64::from(id);
+            let key = SampleKey::new(depth, id);
             if delta.may_win(at, key) && self.wins(context, delta, at, key) {
                 delta.win(at, key, number);
                 any = true;
@@ -332,9 +332,9 @@ impl LayerView {
                     let key = self.behind(context, delta, at);
                     delta.slots[at as usize] = key;
                     if self.plain {
-                        self.levels[key as u32 as usize]
+                        self.levels[key.id() as usize]
                     } else {
-                        self.luma_behind(context, key as u32, delta.place(at), &delta.intensities)
+                        self.luma_behind(context, key.id(), delta.place(at), &delta.intensities)
                     }
                 }
             };
@@ -437,7 +437,7 @@ impl ViewDelta {
         self.enter(region);
         let size = region.height() << self.shift;
         if self.slots.len() < size + 1 {
-            self.slots.resize(size + 1, 0);
+            self.slots.resize(size + 1, SampleKey::BACKGROUND);
             self.touched.resize(size + 1, 0);
             self.who.resize(size + 1, 0);
         }
@@ -451,13 +451,13 @@ impl ViewDelta {
 
     /// False where a fresh key is certainly not seen at a pixel.
     #[inline]
-    fn may_win(&self, at: u32, key: u64) -> bool {
-        key >> 48 <= self.slots[at as usize] >> 48 || self.who[at as usize] == 1
+    fn may_win(&self, at: u32, key: SampleKey) -> bool {
+        key.bits() >> 48 <= self.slots[at as usize].bits() >> 48 || self.who[at as usize] == 1
     }
 
     /// Gives a pixel to a piece.
     #[inline]
-    fn win(&mut self, at: u32, key: u64, number: u32) {
+    fn win(&mut self, at: u32, key: SampleKey, number: u32) {
         let i = at as usize;
         self.touched[self.count] = at;
         self.count += usize::from(self.who[i] == 0);

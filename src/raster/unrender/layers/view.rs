@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     num::fixed::level,
-    raster::{Face, FaceGeometry, Paint, PixelRect, Projector, ScreenVertex, Shader, draw::EMPTY},
+    raster::{Face, FaceGeometry, Paint, PixelRect, Projector, SampleKey, ScreenVertex, Shader},
     view::{Interpolation, View, ViewSet},
 };
 
@@ -78,7 +78,8 @@ impl LayerView {
             1 => reference.iter().map(|&y0| y0 as u8).collect(),
             _ => Vec::new(),
         };
-        let nothing = u64::from(u32::MAX) << 32 | count as u64;
+        // The id after the last triangle: tables by id have an entry for the background.
+        let nothing = SampleKey::new(u32::MAX, count as u32);
         let mut pictures = Self {
             view: *view,
             shader: Shader::new(view),
@@ -117,7 +118,9 @@ impl LayerView {
     fn draw(&mut self, model: &Model) {
         let positions = model.positions.iter();
         let screen: Vec<ScreenVertex> = positions.map(|&p| self.projector.screen(p)).collect();
-        let mut lists = std::mem::replace(&mut self.lists, FragmentLists::new(0, 0, &[], 0, 0));
+        let nothing = self.lists.nothing();
+        let mut lists =
+            std::mem::replace(&mut self.lists, FragmentLists::new(0, 0, &[], 0, nothing));
         for id in 0..model.corners.len() as u32 {
             let corners = model.corners[id as usize];
             let intensities = corners.map(|v| self.vertex_intensity(model, v));
@@ -129,7 +132,7 @@ impl LayerView {
             face.pieces(&self.projector, self.view.cull, |setup, paint| {
                 setup.fragments(self.projector.image(), |x, y, depth| {
                     let at = y as usize * self.width + x as usize;
-                    let key = u64::from(depth) << 32 | u64::from(id);
+                    let key = SampleKey::new(depth, id);
                     if key < lists.nearest(at) {
                         lists.set_luma(at, paint.luma(setup, x, y));
                     }
@@ -146,10 +149,17 @@ impl LayerView {
     }
 
     /// The keys of the picture as everyone else writes them.
-    pub(super) fn keys(&self) -> Vec<u64> {
+    pub(super) fn keys(&self) -> Vec<SampleKey> {
         let nothing = self.lists.nothing();
         let keys = (0..self.lists.shown().len()).map(|at| self.lists.nearest(at));
-        keys.map(|k| if k == nothing { EMPTY } else { k }).collect()
+        keys.map(|k| {
+            if k == nothing {
+                SampleKey::BACKGROUND
+            } else {
+                k
+            }
+        })
+        .collect()
     }
 
     /// The tile of a sample.
