@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{planar::Aperture, view_cell},
@@ -13,6 +11,7 @@ use crate::{
 
 /// Replace a scene by textured quads that viewers in a cell cannot tell from it (Eisemann & Décoret 2007)
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::cells())]
 pub(super) struct BillboardsArgs {
     /// The scene: .obj, .ply or .stl
     #[arg(value_name = "IN")]
@@ -31,7 +30,7 @@ pub(super) struct BillboardsArgs {
     error_abs: Option<f64>,
     /// The axis that points up
     #[arg(long, value_enum, default_value = "z")]
-    up: UpName,
+    up: Up,
     /// Directions of planes over half a turn, 1 to 4096; the scene is projected on them across and slanted
     #[arg(long, value_name = "N", default_value_t = billboards::Options::DIRECTIONS)]
     directions: u32,
@@ -41,14 +40,6 @@ pub(super) struct BillboardsArgs {
     /// Draw all horizontal faces at one height, as the paper does: nothing bounds how far they go up or down
     #[arg(long)]
     any_height: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-enum UpName {
-    X,
-    Y,
-    Z,
 }
 
 impl BillboardsArgs {
@@ -64,11 +55,7 @@ impl BillboardsArgs {
         };
         Ok(billboards::Options {
             limit,
-            up: match self.up {
-                UpName::X => Up::X,
-                UpName::Y => Up::Y,
-                UpName::Z => Up::Z,
-            },
+            up: self.up,
             directions: self.directions,
             texels: self.texels,
             any_height: self.any_height,

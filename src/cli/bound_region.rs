@@ -11,7 +11,7 @@ use crate::{
         region::{self, Profile},
         view_cell::{Shape, ViewCell, file},
     },
-    cli::{Common, Verdict, input, report, terminal::Terminal},
+    cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
     encode::atomic,
     io,
     mesh::{Mesh, MeshParts},
@@ -19,16 +19,16 @@ use crate::{
 
 /// Draw where a point may move before a viewer in a view cell sees it move by more than an angle
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
+#[command(after_long_help = file_help::paragraphs(&["\
 A .svg shows the region in a plane through the first point: that of point and cell for a segment or a line, one that \
 holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl) is the region's surface. \
 Where the region has no end it is cut off at --reach. The cell is drawn in red, of one without an end what is in the \
-picture.")]
+picture.", &file_help::cells()]))]
 pub(super) struct BoundRegionArgs {
     /// Figure (.svg) or mesh (.obj, .ply, .stl)
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Where viewers may be: a JSON cell file (see `lodmark bound --help`)
+    /// Where viewers may be: a JSON cell file
     #[arg(long, value_name = "FILE")]
     cell: PathBuf,
     /// The point, as x,y,z; may be given several times
@@ -181,8 +181,8 @@ impl Trace {
     }
 }
 
-/// Outlines with their points, and the corners of the cell with all lines between them, seen along the normal; of a cell
-/// without an end what is in the picture.
+/// Draws outlines with their points, and the corners of the cell with all lines between them, seen along the normal; of a
+/// cell without an end what is in the picture.
 fn svg(points: &[DVec3], profiles: &[Profile], cell: &ViewCell) -> String {
     let Some([x, y]) = profiles.first().map(|p| p.axes) else {
         return String::new();
@@ -197,80 +197,98 @@ fn svg(points: &[DVec3], profiles: &[Profile], cell: &ViewCell) -> String {
     let corners = cell.corners().unwrap_or_default();
     let cell: Vec<[f64; 2]> = corners.iter().map(|&p| flat(p)).collect();
     let foot = trace.as_ref().map(|t| &t.foot);
-    let all = || outlines.iter().flatten().chain(&cell).chain(foot);
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for p in all() {
-        for axis in 0..2 {
-            low[axis] = low[axis].min(p[axis]);
-            high[axis] = high[axis].max(p[axis]);
-        }
-    }
-    let span = (high[0] - low[0]).max(high[1] - low[1]);
-    let span = if span > 0.0 { span } else { 1.0 };
-    let scale = 760.0 / span;
-    let place = |p: [f64; 2]| {
-        [
-            20.0 + (p[0] - low[0]) * scale,
-            20.0 + (p[1] - low[1]) * scale,
-        ]
-    };
-    let path = |points: &[[f64; 2]]| {
-        let mut text = String::new();
-        for &p in points {
-            let [x, y] = place(p);
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{x:.3},{y:.3} ");
-        }
-        text.trim_end().to_string()
-    };
-    let mut text = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 800\">\n<rect width=\"800\" height=\"800\" \
-         fill=\"white\"/>\n",
-    );
+    let mut page = Page::around(outlines.iter().flatten().chain(&cell).chain(foot));
     if let Some(trace) = &trace {
-        // Out of the picture, however steep.
-        let far = 4.0 * span / (trace.along[0].abs() + trace.along[1].abs());
-        let corners = trace.corners(far);
-        if trace.inward.is_some() {
-            let _ = writeln!(
-                text,
-                "<polygon points=\"{}\" fill=\"#b22222\" fill-opacity=\"0.15\"/>",
-                path(&corners)
-            );
-        }
-        let _ = writeln!(
-            text,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"#b22222\" stroke-width=\"2\"/>",
-            path(&corners[..2])
-        );
+        page.trace(trace);
     }
     for (outline, &point) in outlines.iter().zip(points) {
-        let [px, py] = place(flat(point));
-        let _ = writeln!(
-            text,
-            "<polygon points=\"{}\" fill=\"#cfe0f5\" stroke=\"#1f4e96\" stroke-width=\"1.5\"/>\n<circle cx=\"{px:.3}\" \
-             cy=\"{py:.3}\" r=\"3\" fill=\"#1f4e96\"/>",
-            path(outline)
+        page.polygon(
+            outline,
+            "fill=\"#cfe0f5\" stroke=\"#1f4e96\" stroke-width=\"1.5\"",
         );
+        page.circle(flat(point), 3, "#1f4e96");
     }
     for (i, &a) in cell.iter().enumerate() {
         if cell.len() == 1 {
-            let [cx, cy] = place(a);
-            let _ = writeln!(
-                text,
-                "<circle cx=\"{cx:.3}\" cy=\"{cy:.3}\" r=\"4\" fill=\"#b22222\"/>"
-            );
+            page.circle(a, 4, "#b22222");
         }
         for &b in &cell[..i] {
-            let _ = writeln!(
-                text,
-                "<polyline points=\"{}\" fill=\"none\" stroke=\"#b22222\" stroke-width=\"2\"/>",
-                path(&[a, b])
-            );
+            page.line(&[a, b]);
         }
     }
-    text.push_str("</svg>\n");
-    text
+    page.text.push_str("</svg>\n");
+    page.text
+}
+
+/// A page of 800 x 800 that shows a square of the figure's plane.
+struct Page {
+    low: [f64; 2],
+    span: f64,
+    text: String,
+}
+
+impl Page {
+    /// A page on which all of these points lie, 20 from its border.
+    fn around<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in points {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        let span = (high[0] - low[0]).max(high[1] - low[1]);
+        let text = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 800\">\n<rect width=\"800\" \
+                    height=\"800\" fill=\"white\"/>\n";
+        Self {
+            low,
+            span: if span > 0.0 { span } else { 1.0 },
+            text: text.into(),
+        }
+    }
+
+    fn place(&self, p: [f64; 2]) -> [f64; 2] {
+        let scale = 760.0 / self.span;
+        [0, 1].map(|axis| 20.0 + (p[axis] - self.low[axis]) * scale)
+    }
+
+    fn path(&self, points: &[[f64; 2]]) -> String {
+        let place = |&p: &[f64; 2]| {
+            let [x, y] = self.place(p);
+            format!("{x:.3},{y:.3}")
+        };
+        points.iter().map(place).collect::<Vec<_>>().join(" ")
+    }
+
+    // Writing to a string cannot fail.
+    fn polygon(&mut self, points: &[[f64; 2]], style: &str) {
+        let path = self.path(points);
+        let _ = writeln!(self.text, "<polygon points=\"{path}\" {style}/>");
+    }
+
+    fn line(&mut self, points: &[[f64; 2]]) {
+        let path = self.path(points);
+        let style = "fill=\"none\" stroke=\"#b22222\" stroke-width=\"2\"";
+        let _ = writeln!(self.text, "<polyline points=\"{path}\" {style}/>");
+    }
+
+    fn circle(&mut self, center: [f64; 2], radius: u32, fill: &str) {
+        let [x, y] = self.place(center);
+        let _ = writeln!(
+            self.text,
+            "<circle cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"{radius}\" fill=\"{fill}\"/>"
+        );
+    }
+
+    /// Draws an endless cell, out of the picture, however steep.
+    fn trace(&mut self, trace: &Trace) {
+        let far = 4.0 * self.span / (trace.along[0].abs() + trace.along[1].abs());
+        let corners = trace.corners(far);
+        if trace.inward.is_some() {
+            self.polygon(&corners, "fill=\"#b22222\" fill-opacity=\"0.15\"");
+        }
+        self.line(&corners[..2]);
+    }
 }
 
 /// Several meshes as one.

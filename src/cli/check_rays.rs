@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, contact_sheet::contact_sheet, input, report, terminal::Terminal};
+use super::{
+    Common, Verdict, contact_sheet::contact_sheet, file_help, input, report, terminal::Terminal,
+};
 use crate::{
     Error, Progress, Result,
     encode::png,
@@ -15,6 +17,7 @@ use crate::{
 /// Cast a ray through every pixel centre and hold the rasterizer's ID buffer against what it hits; exit code 1 when a
 /// difference is not explained, or when more are than rounding should make
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::views())]
 pub(super) struct CheckRaysArgs {
     /// The mesh: .obj, .ply or .stl
     #[arg(value_name = "IN")]

@@ -15,6 +15,7 @@ mod check_rays;
 mod compare;
 mod contact_sheet;
 mod demo;
+mod file_help;
 mod golden;
 mod guidance_args;
 mod input;
@@ -58,7 +59,7 @@ struct Arguments {
     command: Command,
 }
 
-/// What every command understands.
+/// Options of every command.
 #[derive(Clone, Debug, clap::Args)]
 struct Common {
     /// Number of threads; never changes a result [default: all cores]
@@ -100,7 +101,7 @@ enum Command {
 /// Commands that the documentation names and this version does not have.
 const NOT_BUILT: &[&str] = &["lod"];
 
-/// What a command that succeeded has to say.
+/// The answer of a command that succeeded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
     /// Exit code 0.

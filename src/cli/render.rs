@@ -1,14 +1,14 @@
 //! `lodmark render`: reference images.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
     encode::{atomic, hash, npy, png},
-    raster::{self, Scene},
+    raster::{self, Picture, Scene},
     view::{
         self, Cull, Interpolation, Projection, Shading, Sphere, ViewSet, ViewsName,
         file::ImageHashes, frame_of,
@@ -17,6 +17,7 @@ use crate::{
 
 /// Draw reference images of a mesh, with the views as a file that others can draw from
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::views())]
 pub(super) struct RenderArgs {
     /// The mesh: .obj, .ply or .stl; ids are 1 + the number of the triangle in the file
     #[arg(value_name = "IN")]
@@ -33,15 +34,15 @@ pub(super) struct RenderArgs {
     /// Samples per pixel along each axis: 1, 2 or 4 [default: 1]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// What to write
+    /// Buffers to write
     #[arg(long, value_enum, value_delimiter = ',', default_value = "luma")]
     buffer: Vec<Buffer>,
     /// Flat or Gouraud [default: flat]
     #[arg(long, value_enum)]
-    shading: Option<ShadingName>,
+    shading: Option<Interpolation>,
     /// Which side is left out [default: none]
     #[arg(long, value_enum)]
-    cull: Option<CullName>,
+    cull: Option<Cull>,
     /// Orthographic instead of perspective views
     #[arg(long)]
     orthographic: bool,
@@ -62,19 +63,6 @@ enum Buffer {
     Depth,
     /// 255 where a triangle is
     Coverage,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ShadingName {
-    Flat,
-    Gouraud,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum CullName {
-    None,
-    Back,
-    Front,
 }
 
 impl RenderArgs {
@@ -107,21 +95,54 @@ impl RenderArgs {
         if let Some(bits) = self.subpixel_bits {
             set.subpixel = bits.try_into().map_err(Error::Usage)?;
         }
-        let interpolation = match self.shading {
-            Some(ShadingName::Gouraud) => Interpolation::Gouraud,
-            _ => Interpolation::Flat,
-        };
-        let cull = match self.cull {
-            Some(CullName::Back) => Cull::Back,
-            Some(CullName::Front) => Cull::Front,
-            _ => Cull::None,
-        };
         set.with_shading(Shading {
-            interpolation,
+            interpolation: self.shading.unwrap_or_default(),
             ..Shading::default()
         })
-        .with_cull(cull)
+        .with_cull(self.cull.unwrap_or_default())
         .with_samples(self.samples.unwrap_or(1))
+    }
+}
+
+impl Buffer {
+    fn file_name(self, view: usize) -> String {
+        let name = self.to_possible_value();
+        let name = name.as_ref().map_or("", |value| value.get_name());
+        let extension = match self {
+            Self::Luma | Self::Rgb | Self::Coverage => "png",
+            Self::Ids | Self::Depth => "npy",
+        };
+        format!("view-{view:02}-{name}.{extension}")
+    }
+
+    /// Writes the buffer of a picture, and notes the hash of what others compare bit by bit.
+    fn write(
+        self,
+        file: &Path,
+        picture: &Picture<[u8; 3]>,
+        samples: u32,
+        hashes: &mut ImageHashes,
+    ) -> Result<()> {
+        match self {
+            Self::Luma => {
+                let sums = raster::sum_samples(&picture.luma(), samples);
+                let luma = raster::mean_luma(&sums, samples);
+                hashes.insert("luma".into(), hash::plane_sha256(&luma));
+                png::write_grey(file, &luma)
+            }
+            Self::Rgb => png::write_rgb(file, &raster::mean_rgb(&picture.tones, samples)),
+            Self::Ids => {
+                let ids = raster::ids(picture);
+                hashes.insert("ids".into(), hash::plane_sha256(&ids));
+                npy::write_plane(file, &ids)
+            }
+            Self::Depth => {
+                let depths = raster::depths(picture);
+                hashes.insert("depth".into(), hash::plane_sha256(&depths));
+                npy::write_plane(file, &depths)
+            }
+            Self::Coverage => png::write_grey(file, &raster::coverage(picture)),
+        }
     }
 }
 
@@ -142,40 +163,9 @@ pub(super) fn run(options: &RenderArgs, common: &Common, terminal: &Terminal) ->
         let picture = raster::rgb(&scene, view, &framed);
         dropped += picture.dropped;
         let mut own = ImageHashes::default();
-        for buffer in &options.buffer {
-            let path = |extension: &str| {
-                let name = buffer
-                    .to_possible_value()
-                    .map_or_else(String::new, |v| v.get_name().to_string());
-                options
-                    .folder
-                    .join(format!("view-{i:02}-{name}.{extension}"))
-            };
-            match buffer {
-                Buffer::Luma => {
-                    let luma = raster::mean_luma(
-                        &raster::sum_samples(&picture.luma(), framed.samples),
-                        framed.samples,
-                    );
-                    own.insert("luma".into(), hash::plane_sha256(&luma));
-                    png::write_grey(&path("png"), &luma)?;
-                }
-                Buffer::Rgb => png::write_rgb(
-                    &path("png"),
-                    &raster::mean_rgb(&picture.tones, framed.samples),
-                )?,
-                Buffer::Ids => {
-                    let ids = raster::ids(&picture);
-                    own.insert("ids".into(), hash::plane_sha256(&ids));
-                    npy::write_plane(&path("npy"), &ids)?;
-                }
-                Buffer::Depth => {
-                    let depths = raster::depths(&picture);
-                    own.insert("depth".into(), hash::plane_sha256(&depths));
-                    npy::write_plane(&path("npy"), &depths)?;
-                }
-                Buffer::Coverage => png::write_grey(&path("png"), &raster::coverage(&picture))?,
-            }
+        for &buffer in &options.buffer {
+            let file = options.folder.join(buffer.file_name(i));
+            buffer.write(&file, &picture, framed.samples, &mut own)?;
         }
         hashes.push(own);
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     collapse::{History, Replay},
@@ -15,6 +15,7 @@ use crate::{
 ///
 /// Polishing follows the last collapse and belongs to the last level only.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::HISTORY)]
 pub(super) struct ReplayArgs {
     /// The mesh that was simplified
     #[arg(value_name = "IN")]

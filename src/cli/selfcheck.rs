@@ -14,7 +14,7 @@ pub(super) struct SelfcheckArgs {
     groups: Vec<String>,
 }
 
-/// What the program runs on: none of it may change a result.
+/// Machine and build that the program runs on: none of it may change a result.
 #[derive(Debug, serde::Serialize)]
 struct Machine {
     architecture: &'static str,

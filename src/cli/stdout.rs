@@ -8,7 +8,7 @@ use std::{
 
 use crate::{Error, Result};
 
-/// What the system said when a line could not be written for the first time.
+/// The system's error when a line could not be written for the first time.
 static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
 
 /// Writes a line; see the macro `answer`.

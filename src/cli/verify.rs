@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ArgGroup;
 
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
@@ -18,7 +18,7 @@ use crate::{
 /// Check a guaranteed error by independent samples and proofs; exit code 1 where a point breaks it
 #[derive(Debug, clap::Args)]
 #[command(group(ArgGroup::new("claim").args(["error", "error_abs", "error_deg"]).required(true)))]
-#[command(after_help = "\
+#[command(after_long_help = file_help::paragraphs(&["\
 A distance is checked from both meshes to the other one: at samples spread over the area, along all edges, at all \
 vertices, and by cutting every triangle until it is certain that all of it is near enough or that a point of it is \
 not. The report says what was measured, where it was largest, what is proven, and what share of the area is undecided \
@@ -27,7 +27,7 @@ not. The report says what was measured, where it was largest, what is proven, an
 An angle is checked for the viewers in a cell with the file that `simplify --bound-out` wrote: that its pieces cover every \
 original triangle without a gap, and that no point and what stands for it are seen under more than the angle, at samples \
 and by proof. Without that file only a weaker property is checked: that every original point has some point of LOW within \
-the angle.")]
+the angle.", &file_help::cells(), file_help::CORRESPONDENCE]))]
 pub(super) struct VerifyArgs {
     /// The original mesh: .obj, .ply or .stl
     #[arg(value_name = "REF")]
@@ -55,7 +55,7 @@ pub(super) struct VerifyArgs {
     /// The viewpoints of --error-deg: a JSON cell file
     #[arg(long, value_name = "FILE", requires = "error_deg", conflicts_with_all = ["error", "error_abs"])]
     cell: Option<PathBuf>,
-    /// What stands for what: the file that simplify --bound-out wrote
+    /// The record of which part stands for which: the file that simplify --bound-out wrote
     #[arg(long, value_name = "FILE", requires = "error_deg", conflicts_with_all = ["error", "error_abs"])]
     bound: Option<PathBuf>,
     /// Points on each mesh [default: 1000000]

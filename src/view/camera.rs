@@ -27,6 +27,7 @@ pub enum Eye {
 
 /// Which triangles are not drawn, by the side they show. A front is counter-clockwise on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Cull {
     /// All are drawn.
@@ -40,6 +41,7 @@ pub enum Cull {
 
 /// Where intensities are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Interpolation {
     /// Once per triangle, at its centroid, with its own normal.

@@ -1,4 +1,4 @@
-//! The cameras around the mesh, and how much each counts.
+//! The cameras around the mesh, and their weights.
 //!
 //! Zhang & Turk 2002, section 4: the vertices of an octahedron whose triangles are split in four k times, orthographic.
 //! Deviations, unless told otherwise: the octahedron is turned, because cameras exactly along the sides of a shape tie
@@ -27,7 +27,7 @@ const ROTATION: [f64; 4] = [7.0, 7.0, 7.0, 15.0];
 pub(super) struct Cameras {
     /// Unit vectors from the mesh towards every camera.
     pub(super) towards: Vec<DVec3>,
-    /// How much every camera counts; the mean is 1.
+    /// Weight of every camera; the mean is 1.
     pub(super) weights: Vec<f64>,
     /// Their views onto the sphere.
     pub(super) set: ViewSet,

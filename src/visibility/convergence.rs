@@ -1,4 +1,4 @@
-//! How fast the measure converges with the number of cameras: Figure 3 of Zhang & Turk 2002.
+//! The error of the measure against the number of cameras: Figure 3 of Zhang & Turk 2002.
 
 use super::{MeasureOptions, Visibility, measure};
 use crate::{

@@ -1,4 +1,4 @@
-//! What views have seen, as sums of integers: they have no order, so views can be counted in any split.
+//! Counts of what views see, as sums of integers: they have no order, so views can be counted in any split.
 //!
 //! A view adds to a triangle the weight max(0, r . n) A of equation 4.3 in units of 2^-32, rounded to nearest, and the
 //! part of it that the view sees. n is the triangle's normal, r points towards the camera: with the paper's viewing
@@ -117,10 +117,10 @@ pub(super) fn count(
             let total = views.len() as u64;
             progress.step("visibility", done.fetch_add(1, Ordering::Relaxed), total)?;
             let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut sight = lock().pop().unwrap_or_else(SeenParts::new);
+            let mut seen = lock().pop().unwrap_or_else(SeenParts::new);
             let camera = (&cameras, views_of_batch[i] as usize);
-            sight.look(&pieces, camera, options, parts);
-            lock().push(sight);
+            seen.measure(&pieces, camera, options, parts);
+            lock().push(seen);
             Ok(())
         })?;
         watch(parts);

@@ -1,4 +1,4 @@
-//! Triangles that no pixel shows: hidden, or too small to hit a pixel centre?
+//! The depth test for triangles that no pixel shows: hidden, or too small to hit a pixel centre?
 //!
 //! Zhang & Turk 2002, section 4, end: "the depth at any of its vertices is within a tolerance to the depth of a
 //! neighbor pixel". Neither the tolerance nor the neighbourhood is given: here a vertex may be no more than one pixel's
@@ -19,10 +19,10 @@ use crate::{
     view::View,
 };
 
-/// How far behind a plane a point may lie and still count as on it, in pixels.
+/// Depth behind a plane at which a point still counts as on it, in pixels.
 const PLANE_TOLERANCE: f64 = 0.02;
 
-/// How much deeper than a neighbouring pixel a vertex may be, in pixels.
+/// Depth behind a neighbouring pixel at which a vertex is still visible, in pixels.
 const NEIGHBOR_TOLERANCE: f64 = 1.0;
 
 /// Units in a pixel, and half of them: pixel centres.
@@ -57,7 +57,7 @@ pub(super) struct DepthTest {
     size: i32,
     tolerance: f64,
     points: Vec<Point>,
-    /// What every pixel shows; for the rule of neighbours the greatest depth around it, flat.
+    /// The plane that every pixel shows; for the rule of neighbours the greatest depth around it, flat.
     slopes: Vec<Slope>,
 }
 

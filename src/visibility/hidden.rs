@@ -1,4 +1,4 @@
-//! What no view sees, removed.
+//! Removes the triangles that no view sees.
 
 use super::Visibility;
 use crate::{

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{Error, Progress, Result, geometry::double_area, mesh::Mesh, view::frame_of};
 
-/// How visible a mesh and each of its triangles are.
+/// The visibility of a mesh and of each of its triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     triangles: Vec<f64>,
@@ -65,7 +65,7 @@ impl Visibility {
         self.never_seen_area
     }
 
-    /// What it was measured with.
+    /// The options that it was measured with.
     #[must_use]
     pub fn options(&self) -> &MeasureOptions {
         &self.options

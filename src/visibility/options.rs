@@ -1,4 +1,4 @@
-//! What can be chosen about a visibility measurement, and the two sets of choices.
+//! The options of a visibility measurement, and the two sets of them.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::{
     view::{SIDE_LIMIT, sets::OCTAHEDRON_LIMIT},
 };
 
-/// How the octahedron of cameras stands.
+/// The orientation of the octahedron of cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Alignment {
@@ -19,7 +19,7 @@ pub enum Alignment {
     Generic,
 }
 
-/// How much a camera counts.
+/// The weight of a camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CameraWeights {
@@ -49,15 +49,15 @@ pub enum UnseenRule {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct MeasureOptions {
-    /// How often the octahedron of cameras is subdivided, 0 to 5: 4^(k+1) + 2 cameras.
+    /// Number of times that the octahedron of cameras is subdivided, 0 to 5: 4^(k+1) + 2 cameras.
     pub octahedron: u32,
     /// Width and height of the ID buffers in pixels; the bounding sphere of the mesh touches all four sides.
     pub size: u32,
     /// Sub-pixel bits of the rasterizer.
     pub subpixel_bits: SubpixelBits,
-    /// How the cameras stand.
+    /// The orientation of the cameras.
     pub alignment: Alignment,
-    /// How much each counts.
+    /// The weight of each.
     pub weights: CameraWeights,
     /// When a triangle that no pixel shows is visible.
     pub unseen: UnseenRule,
@@ -66,7 +66,7 @@ pub struct MeasureOptions {
     pub fractional: bool,
     /// True: V(t) is that of the side which is seen better, whichever way the triangle is turned.
     pub two_sided: bool,
-    /// Triangles are measured in pieces whose edges are at most so many pixels long; `None` for whole triangles.
+    /// Triangles are measured in pieces with edges of at most this many pixels; `None` for whole triangles.
     pub edge_limit: Option<f64>,
 }
 

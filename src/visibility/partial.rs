@@ -1,4 +1,4 @@
-//! What some of the views have seen: a result in parts that can be put together in any order.
+//! Partial visibility: the counts of some of the views, in parts that can be put together in any order.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::{
     mesh::{Mesh, content_digest},
 };
 
-/// What some of the views of a measurement have seen of one mesh: sums of integers.
+/// The counts of some of the views of a measurement over one mesh: sums of integers.
 ///
 /// Surveys of the same mesh with the same options and different views add up, in any order and any split, to the same
 /// bytes as a survey of all views. A complete one holds everything that V(t) is computed from.
@@ -41,7 +41,7 @@ impl PartialVisibility {
         Self::watched(mesh, options, range, progress, |_| {})
     }
 
-    /// As [`PartialVisibility::of_views`]; `watch` is shown what [`count`] shows.
+    /// Counts as [`PartialVisibility::of_views`] does; `watch` is shown the parts that [`count`] shows.
     pub(super) fn watched(
         mesh: &Mesh,
         options: &MeasureOptions,
@@ -59,7 +59,7 @@ impl PartialVisibility {
         })
     }
 
-    /// What it was counted with.
+    /// The options that it was counted with.
     #[must_use]
     pub fn options(&self) -> &MeasureOptions {
         &self.options

@@ -1,4 +1,4 @@
-//! F(t, v): how much of every triangle one view sees (Zhang & Turk 2002, section 4).
+//! F(t, v): the part of every triangle that one view sees (Zhang & Turk 2002, section 4).
 //!
 //! F is a whole number of [`FULL`]ths: all or nothing for a piece, or, as an option, the share of its covered samples
 //! that show it (their future work); for a face in pieces the mean over its area. A face of which anything is seen has
@@ -13,7 +13,7 @@ use crate::{
 /// All of a triangle is seen.
 pub(super) const FULL: u16 = 1 << 15;
 
-/// Buffers of one thread.
+/// The depth buffer, depth test and pixel counts of one thread.
 #[derive(Clone, Debug)]
 pub(super) struct SeenParts {
     buffer: ZBuffer,
@@ -41,8 +41,8 @@ impl SeenParts {
         }
     }
 
-    /// Looks at the pieces from camera `index`, and writes the part of every face that it sees.
-    pub(super) fn look(
+    /// Draws the pieces from camera `index`, and writes the part of every face that it sees.
+    pub(super) fn measure(
         &mut self,
         pieces: &Pieces,
         (cameras, index): (&Cameras, usize),
@@ -122,7 +122,7 @@ impl PieceView<'_> {
         }
     }
 
-    /// How many samples a piece covers, whatever they show.
+    /// Counts the samples that a piece covers, whatever they show.
     fn covered_samples(&self, piece: usize) -> u32 {
         let scene = &self.pieces.scene;
         let positions = scene.triangles()[piece].map(|v| scene.positions()[v as usize]);

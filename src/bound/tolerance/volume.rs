@@ -13,6 +13,7 @@ const LEAST: f64 = 1e-6;
 
 /// From where caps cast their shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Source {
     /// From the edges of the link: no new face pierces a cap.

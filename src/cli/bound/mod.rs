@@ -4,11 +4,11 @@ mod pictures;
 
 mod switch_args;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::{Common, Verdict, input, report, terminal::Terminal};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
     bound::{
@@ -27,25 +27,21 @@ use crate::{
 /// Guarantee how far a simplified mesh is from its original for every viewer in a view cell
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("question").args(["cell", "switch_deg", "switch_px"]).required(true).multiple(true)))]
-#[command(after_help = "\
+#[command(after_long_help = file_help::paragraphs(&["\
 The guarantee: for every point of REF, not only its vertices, there is a point of LOW that no viewer of the cell sees \
-more than so many degrees away from it. The points are those of the nearest triangle: REF is cut into parts, each goes \
+more than that many degrees away from it. The points are those of the nearest triangle: REF is cut into parts, each goes \
 to the triangle of LOW that is nearest to its centroid, each corner to the nearest point of that triangle. Neighbouring \
 parts may go apart: the guarantee is about where points are seen, and says nothing of cracks or of what is in front. \
-It holds one way; exchange REF and LOW for the other. A mesh without triangles is a point cloud. With --correspondence the map is the recorded one, which moves no two neighbours apart.
-
-A cell file holds {\"schema\": 1, \"cell\": {KIND: ...}} with one of point: [x, y, z], segment: [A, B], line: {point, \
-direction}, polygon: [A, B, C, ...], plane: {point, normal}, polyhedron: [A, B, C, D, ...] (their convex hull), box: \
-{low, high}, half_space: {point, normal} (viewers are on the side the normal points away from).
-
+It holds one way; exchange REF and LOW for the other. A mesh without triangles is a point cloud. With --correspondence the map is the recorded one, which moves no two neighbours apart.", "\
 The report has bound_deg (the guarantee), attained_deg (what is seen of a point: the guarantee is no larger by more than \
 --precision unless the parts ran out or the cell meets the mesh), worst (that point, its replacement, its triangle and \
-the viewpoint), pieces; with --heuristics: vertices_deg, edges_deg; with --switch-*: distance_bound, switch_distance.")]
+the viewpoint), pieces; with --heuristics: vertices_deg, edges_deg; with --switch-*: distance_bound, switch_distance.",
+    &file_help::cells(), file_help::CORRESPONDENCE]))]
 pub(super) struct BoundArgs {
     /// The original: .obj, .ply or .stl
     #[arg(value_name = "REF")]
     reference: PathBuf,
-    /// What stands for it
+    /// The mesh that stands for it
     #[arg(value_name = "LOW")]
     low: PathBuf,
     /// Where viewers may be: a JSON cell file, in the units of REF
@@ -82,7 +78,7 @@ struct Found {
     attained_deg: f64,
     worst: Option<WorstPoint>,
     pieces: u64,
-    /// How a point of LOW is chosen for each point of REF.
+    /// The rule that chooses a point of LOW for each point of REF.
     map: &'static str,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     claims: Option<ClaimsInDegrees>,
@@ -110,19 +106,7 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
     let reference = input::read(&options.reference, true, terminal)?;
     let low = input::read(&options.low, true, terminal)?;
     for (path, mesh) in [(&options.reference, &reference), (&options.low, &low)] {
-        if mesh.positions().is_empty() {
-            return Err(Error::input(
-                path,
-                "the file has neither triangles nor vertices; expected at least one vertex",
-            ));
-        }
-        if mesh.triangles().is_empty() {
-            terminal.say(&format!(
-                "{}: no triangles; its {} vertices are taken as a point cloud",
-                path.display(),
-                mesh.positions().len()
-            ));
-        }
+        require_vertices(path, mesh, terminal)?;
     }
     let frame = frame_for(&reference);
     let (own, other) = (reference.enter_frame(frame), low.enter_frame(frame));
@@ -231,6 +215,24 @@ impl BoundArgs {
         };
         Ok(Some(pairs.into_iter().map(inside).collect()))
     }
+}
+
+/// Refuses a mesh without vertices; one without triangles is a point cloud.
+fn require_vertices(path: &Path, mesh: &Mesh, terminal: &Terminal) -> Result<()> {
+    if mesh.positions().is_empty() {
+        return Err(Error::input(
+            path,
+            "the file has neither triangles nor vertices; expected at least one vertex",
+        ));
+    }
+    if mesh.triangles().is_empty() {
+        terminal.say(&format!(
+            "{}: no triangles; its {} vertices are taken as a point cloud",
+            path.display(),
+            mesh.positions().len()
+        ));
+    }
+    Ok(())
 }
 
 /// The frame of a mesh, or of its vertices where it has no triangles.

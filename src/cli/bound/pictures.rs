@@ -1,4 +1,4 @@
-//! What the viewer sees who sees a replacement farthest off its place: original, replacement and difference.
+//! The view of the viewer who sees a replacement farthest off its place: original, replacement and difference.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ use crate::{
 
 /// Samples per pixel along each axis.
 const SAMPLES: u32 = 2;
-/// How much the difference is exaggerated.
+/// Factor by which the difference is exaggerated.
 const SCALE: u8 = 2;
 /// The share of the width of the zoomed picture that the error takes.
 const SHOWN: f64 = 0.125;

@@ -10,13 +10,13 @@ mod sheets;
 
 use std::path::{Path, PathBuf};
 
-use super::{Common, Verdict, terminal::Terminal};
+use super::{Common, Verdict, file_help, terminal::Terminal};
 use crate::{Error, Result, metric::surface::DEFAULT_SAMPLES, view::ViewsName};
 
 /// Measure how far meshes or images are from a reference
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("pictures").multiple(true)))]
-#[command(after_help = "\
+#[command(after_long_help = file_help::paragraphs(&["\
 Meshes are equal where their files hold the same: vertices, triangles and attributes in the same order, before \
 welding. Distances go both ways, and the larger one is reported; in the table as % of the diagonal of the reference's \
 bounding box, in the report in file units as well. PSNR is `-` (in the report: null) where nothing differs.
@@ -24,12 +24,12 @@ bounding box, in the report in file units as well. PSNR is `-` (in the report: n
 The report has, for every candidate: rms_flat, rms_gouraud, psnr_flat, psnr_gouraud, squared_error_* (sum, pixels, \
 samples), worst, distance_mean, distance_rms, distance_max, views[]; with --image-error also image_error: error (the \
 root of the summed squared differences in levels, equation 5.11 of Zhang & Turk 2002), rms (the same per pixel, \
-comparable between sizes), squared_error, views (20).")]
+comparable between sizes), squared_error, views (20).", &file_help::views()]))]
 pub(super) struct CompareArgs {
     /// The reference: a mesh (.obj, .ply, .stl) or an image (.png; .npy of ids or depths)
     #[arg(value_name = "REF")]
     reference: PathBuf,
-    /// What to compare with it, of the same kind
+    /// The candidates to compare with it, of the same kind
     #[arg(value_name = "CAND", required = true)]
     candidates: Vec<PathBuf>,
     /// dodecahedron, rhombicuboctahedron, octahedron:K, or a view file [default: rhombicuboctahedron]
@@ -66,7 +66,7 @@ pub(super) struct CompareArgs {
     /// differences in red (Zhang & Turk 2002, Figure 8)
     #[arg(long, value_name = "DIR", group = "pictures")]
     red_differences: Option<PathBuf>,
-    /// How much pictures exaggerate differences, 1 to 255 [default: 2]
+    /// Factor by which pictures exaggerate differences, 1 to 255 [default: 2]
     #[arg(long, value_name = "FACTOR", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..))]
     difference_scale: Option<u8>,
 }

@@ -1,7 +1,5 @@
 //! The options of the method `tolerance`: how far from the input the result may be.
 
-use clap::ValueEnum;
-
 use crate::{
     Error, Result,
     bound::tolerance::Source,
@@ -27,19 +25,10 @@ pub(super) struct DistanceArgs {
     one_sided: bool,
     /// Tolerance method: where other places are refused, try the best one in the tolerance volume (slow)
     #[arg(long, value_enum)]
-    volume: Option<VolumeName>,
+    volume: Option<Source>,
     /// Tolerance method: a local bound that grows, as published (slow)
     #[arg(long)]
     growing: bool,
-}
-
-/// [`Source`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum VolumeName {
-    /// No new face pierces a cap
-    Edges,
-    /// As published: partition sets from vertices
-    Vertices,
 }
 
 impl DistanceArgs {
@@ -75,10 +64,7 @@ impl DistanceArgs {
         };
         Ok(ToleranceOptions {
             one_sided: self.one_sided,
-            volume: self.volume.map(|name| match name {
-                VolumeName::Edges => Source::Edges,
-                VolumeName::Vertices => Source::Vertices,
-            }),
+            volume: self.volume,
             growing: self.growing,
             ..ToleranceOptions::new(error)
         })

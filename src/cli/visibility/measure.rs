@@ -8,7 +8,7 @@ use std::{
 use super::{chart, merge};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, input, report, terminal::Terminal},
+    cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
     encode::{atomic, npy},
     io,
     mesh::{self, Mesh},
@@ -20,6 +20,7 @@ use crate::{
 
 /// Measure how visible every triangle is from all around (Zhang & Turk 2002)
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::PARTIAL)]
 pub(in crate::cli) struct VisibilityArgs {
     /// The mesh: .obj, .ply or .stl; it is brought into canonical order first
     #[arg(value_name = "IN")]
@@ -38,7 +39,7 @@ pub(in crate::cli) struct VisibilityArgs {
     /// Write the mesh without the triangles that no camera sees
     #[arg(long, value_name = "FILE")]
     remove_hidden: Option<PathBuf>,
-    /// Keep so many rings of hidden triangles around the seen ones [default: 0]
+    /// Keep this many rings of hidden triangles around the seen ones [default: 0]
     #[arg(long, value_name = "K", requires = "remove_hidden")]
     rings: Option<u32>,
     /// Write the counts: parts for merge-visibility, or, of all views, what simplify can read
@@ -56,7 +57,7 @@ pub(in crate::cli) struct VisibilityArgs {
     no_weld: bool,
 }
 
-/// How it is measured.
+/// The rules of the measurement.
 #[derive(Debug, clap::Args)]
 #[group(id = "Choice", multiple = true)]
 struct Choice {
@@ -211,7 +212,7 @@ pub(in crate::cli) fn run(
     Ok(Verdict::Good)
 }
 
-/// What was found, for the report.
+/// The findings, for the report.
 #[derive(Debug, serde::Serialize)]
 struct Numbers<'a> {
     v_mesh: f64,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, input, report, terminal::Terminal},
+    cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
     encode::{atomic, bytes},
     mesh::Mesh,
     visibility::{PartialVisibility, Visibility},
@@ -12,6 +12,7 @@ use crate::{
 
 /// Put partial visibility results together, in any order: the bytes of a run over all their views
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::PARTIAL)]
 pub(in crate::cli) struct MergeArgs {
     /// Files that `visibility --partial` or this command wrote
     #[arg(value_name = "PARTIAL", required = true)]
@@ -83,7 +84,7 @@ pub(super) fn write(path: &Path, survey: &PartialVisibility) -> Result<()> {
     atomic::write(path, |file| file.write_all(&bytes))
 }
 
-/// What a survey holds, for a report.
+/// The views and sizes of a survey, for a report.
 pub(super) fn summary(survey: &PartialVisibility) -> serde_json::Value {
     let views: Vec<[u32; 2]> = survey.views().iter().map(|r| [r.start, r.end]).collect();
     serde_json::json!({
@@ -94,7 +95,7 @@ pub(super) fn summary(survey: &PartialVisibility) -> serde_json::Value {
     })
 }
 
-/// Says what a survey holds.
+/// Prints the views and sizes of a survey.
 pub(super) fn tell(path: &Path, survey: &PartialVisibility) {
     answer!(
         "{}: views {} of {} cameras, {} triangles",

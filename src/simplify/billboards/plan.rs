@@ -16,7 +16,9 @@ use crate::{
 };
 
 /// Which axis points up; the other two, in cyclic order, span the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
 pub enum Up {
     /// The x-axis.
     X,

@@ -12,7 +12,7 @@ use crate::view::Cull;
 /// rounded down once each.
 pub(super) const QUANTA: f64 = 2.0;
 
-/// What is wrong with a claim.
+/// The fault of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
     /// There is no such triangle.

@@ -25,11 +25,11 @@ use crate::{
     view::{View, ViewSet},
 };
 
-/// How far from an outline a difference is explained, in pixels: one step of an 8-bit grid. Snapping to it moves a
+/// Distance from an outline within which a difference is explained, in pixels: one step of an 8-bit grid. Snapping to it moves a
 /// vertex by up to 0.71 of that, to the 16-bit grid by a 360th.
 pub const TOLERANCE: f64 = 1.0 / 256.0;
 
-/// What a pixel is.
+/// The class of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Class {
@@ -138,13 +138,13 @@ pub struct Witness {
     pub y: u32,
     /// Why it differs.
     pub class: Class,
-    /// What the rasterizer shows.
+    /// The rasterizer's triangle.
     pub raster: Shown,
-    /// What the rays show.
+    /// The rays' triangle.
     pub rays: Shown,
 }
 
-/// What one picture shows at a pixel.
+/// The triangle that one picture shows at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shown {
     /// Number of the triangle in the file; none for the background.

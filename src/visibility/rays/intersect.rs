@@ -137,7 +137,7 @@ fn clip<N: Arithmetic>(matrix: &Matrix, p: DVec3, number: impl Fn(f64) -> N) -> 
     })
 }
 
-/// What meeting a triangle means.
+/// The rule by which a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Hit {
     /// `floor(Z/w 2^32)`, at most `u32::MAX`.
@@ -328,7 +328,7 @@ fn exact_depth(z: &Exact, w: &Exact) -> Option<u32> {
     Some(low as u32)
 }
 
-/// How a line and a triangle meet.
+/// The way a line and a triangle meet.
 enum Meeting<N> {
     Miss,
     /// At the point with the depth `z / w`; `w` is positive.

@@ -98,7 +98,7 @@ impl Outline {
     }
 }
 
-/// What is left of a triangle in front of the near plane.
+/// The part of a triangle in front of the near plane.
 fn in_front(corners: &[Four<f64>; 3]) -> Vec<Four<f64>> {
     let visible = |c: &Four<f64>| c[2] >= 0.0 && c[3] > 0.0;
     let mut polygon = Vec::with_capacity(4);

@@ -1,11 +1,11 @@
-//! How many pixels of a set of views are of which class, the worst of them, and the verdict.
+//! Counts of the pixels of a set of views by class, the worst of them, and the verdict.
 
 use serde::Serialize;
 
 use super::{Class, Classified, Witness};
 use crate::num::fixed::SubpixelBits;
 
-/// How many of the worst pixels are kept.
+/// Number of the worst pixels that are kept.
 pub const WITNESSES: usize = 20;
 
 /// The largest share of pixels that may differ and be explained: 1e-4 at 16 sub-pixel bits; 5e-3 at 8, where snapping
