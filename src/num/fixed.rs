@@ -1,4 +1,4 @@
-//! Where floats become fixed point: screen coordinates and depth.
+//! Fixed point: screen coordinates, depth, levels and weights, and how floats become them.
 
 /// Bits of the fraction of a snapped screen coordinate: positions are multiples of `1 / 2^bits` pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

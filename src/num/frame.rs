@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::math::scale_by_power_of_two;
 
-/// Which floating-point type the coordinates of a file carry; results are rounded to it *before* they are judged,
+/// Floating-point type of the coordinates of a file; results are rounded to it *before* they are judged,
 /// so that the images which drove a choice are those of the file that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

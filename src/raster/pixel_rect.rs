@@ -35,6 +35,18 @@ impl PixelRect {
         }
     }
 
+    /// One pixel.
+    #[inline]
+    #[must_use]
+    pub const fn pixel(x: i32, y: i32) -> Self {
+        Self {
+            x0: x,
+            y0: y,
+            x1: x + 1,
+            y1: y + 1,
+        }
+    }
+
     /// True where it has no pixel.
     #[inline]
     #[must_use]

@@ -1,4 +1,4 @@
-//! What is drawn: triangles with stable ids, their geometry, vertex normals and colours.
+//! [`Scene`]: triangles with stable ids, their geometry, vertex normals and colours.
 
 use std::sync::OnceLock;
 
@@ -126,7 +126,7 @@ impl Scene {
     }
 
     /// Unit vertex normals: the area-weighted sums of the normals around each vertex, zero where undefined. The first
-    /// call takes as long as a look at every triangle.
+    /// call visits every triangle.
     #[must_use]
     pub fn normals(&self) -> &[DVec3] {
         self.normals.get_or_init(|| {

@@ -16,7 +16,7 @@ pub const SIDE_LIMIT: u32 = 4_096;
 /// Visible points have `-w <= x <= w`, `-w <= y <= w` (y up) and `0 <= z <= w`, with z/w = 0 at the near plane.
 pub type Matrix = [[f64; 4]; 4];
 
-/// Where the viewer is.
+/// Position of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Eye {
     /// Perspective: the centre of projection.
@@ -25,7 +25,7 @@ pub enum Eye {
     Axis(DVec3),
 }
 
-/// Which triangles are not drawn, by the side they show. A front is counter-clockwise on the screen.
+/// Side of triangles that is not drawn. A front is counter-clockwise on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
@@ -39,7 +39,7 @@ pub enum Cull {
     Front,
 }
 
-/// Where intensities are computed.
+/// Points at which intensities are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
@@ -61,7 +61,7 @@ pub struct Specular {
     pub exponent: u32,
 }
 
-/// How surfaces are shaded.
+/// Shading of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shading {
@@ -84,7 +84,7 @@ impl Default for Shading {
     }
 }
 
-/// Where the light is.
+/// Position of the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Light {
     /// At the eye; for an orthographic view, along the view axis.
@@ -101,17 +101,17 @@ pub enum Light {
 pub struct View {
     /// Clip space from world space.
     pub matrix: Matrix,
-    /// Where the viewer is.
+    /// Position of the viewer.
     pub eye: Eye,
     /// Distance from the eye (orthographic: from the plane z = 0 of the camera) to the near plane.
     pub near: f64,
     /// Distance to the far plane.
     pub far: f64,
-    /// Which triangles are left out.
+    /// Side of triangles that is left out.
     pub cull: Cull,
-    /// How surfaces are shaded.
+    /// Shading of surfaces.
     pub shading: Shading,
-    /// Where the light is.
+    /// Position of the light.
     pub light: Light,
 }
 

@@ -24,7 +24,7 @@ use crate::num::{
     math::{self, scale_by_power_of_two},
 };
 
-/// How a scene is projected.
+/// Projection of a scene onto an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
     /// From a point, with a field of view of 60 degrees along the shorter side of the image.

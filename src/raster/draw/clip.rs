@@ -59,7 +59,7 @@ pub(super) fn clip<const N: usize>(
     true
 }
 
-/// What is left of a convex polygon on the inner side of a plane.
+/// Cuts a convex polygon at a plane, and keeps the part on the inner side.
 fn cut<const N: usize>(
     projector: &Projector,
     polygon: &[Corner<N>],

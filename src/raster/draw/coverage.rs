@@ -1,5 +1,5 @@
-//! Which pixels a triangle covers, and how deep it is there: scanline spans by exact integer division, and the
-//! half-space test for small triangles. Both visit the same pixels with the same depths.
+//! Coverage and depth of a triangle: scanline spans by exact integer division, and the half-space test for narrow
+//! triangles. Both visit the same pixels with the same depths.
 
 use super::{PixelRect, Setup, setup::EdgeFunction};
 

@@ -12,11 +12,11 @@ pub struct Face {
     pub positions: [DVec3; 3],
     /// The same corners on the screen.
     pub screen: [ScreenVertex; 3],
-    /// What it looks like.
+    /// Light that it sends to the eye.
     pub paint: Paint,
 }
 
-/// Whether all of a face could be drawn.
+/// Completeness of a face that was drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
     /// Every piece was visited (there may be none).

@@ -1,4 +1,4 @@
-//! What a triangle looks like in one view, before it is known which pixels it covers.
+//! [`Paint`]: the light of a triangle in one view, before it is known which pixels it covers.
 
 use super::Setup;
 use crate::num::fixed::{level, luma};

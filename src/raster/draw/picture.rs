@@ -16,7 +16,7 @@ use crate::{
 pub struct Picture<T> {
     /// The nearest triangle of every sample, and how deep it is there.
     pub keys: Grid<SampleKey>,
-    /// What it looks like there.
+    /// Luma or colour of every sample.
     pub tones: Grid<T>,
     /// Triangles that could not be drawn because a coordinate is not finite after the transform.
     pub dropped: u64,
@@ -47,7 +47,7 @@ fn draw<T: Copy>(
     }
 }
 
-/// What the shading of one picture remembers between samples.
+/// Shades the samples of one picture, and remembers what the next sample may need again.
 struct Shading<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -94,7 +94,7 @@ impl<'a> Shading<'a> {
         Paint::gouraud(corners, colors)
     }
 
-    /// What `tone` makes of the piece that the sample shows, or `background`.
+    /// Applies `tone` to the piece that the sample shows; `background` where it shows none.
     fn tone<T: Copy>(
         &mut self,
         key: SampleKey,
@@ -171,14 +171,14 @@ impl<'a> Shading<'a> {
     }
 }
 
-/// Which triangle is nearest at every sample, and how deep: see [`Picture::keys`]. Where many pictures are drawn, a
+/// Draws the nearest triangle of every sample, and how deep it is: see [`Picture::keys`]. Where many pictures are drawn, a
 /// [`ZBuffer`] does the same and keeps its memory.
 #[must_use]
 pub fn keys(scene: &Scene, view: &View, set: &ViewSet) -> Picture<()> {
     draw(scene, view, set, |keys| keys.map(|_| ()))
 }
 
-/// Luma at every sample, 0 to 255; the set's background where nothing is.
+/// Draws the luma of every sample, 0 to 255; the set's background where nothing is.
 #[must_use]
 pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
     draw(scene, view, set, |keys| {
@@ -191,7 +191,7 @@ pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
     })
 }
 
-/// Red, green and blue at every sample; a grey of the set's background where nothing is.
+/// Draws red, green and blue of every sample; a grey of the set's background where nothing is.
 #[must_use]
 pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
     draw(scene, view, set, |keys| {

@@ -51,7 +51,7 @@ pub struct Setup {
     pub(super) w_inverse: [f64; 3],
     /// Pixels whose centres the bounding box contains, inside the image.
     pub(super) bounds: PixelRect,
-    /// Which of the given corners each of the three is.
+    /// Index among the given corners of each of the three.
     pub(super) order: [u8; 3],
     /// True where `i64` holds every sum of `e_i * depth_above_i` inside the triangle.
     pub(super) narrow: bool,

@@ -11,7 +11,7 @@ use crate::{
     view::{Eye, Light, Shading, View},
 };
 
-/// What flat shading needs of a triangle, independent of the view.
+/// Normal and centroid of a triangle: the input of flat shading, the same for every view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceGeometry {
     /// Twice the area times the unit normal.

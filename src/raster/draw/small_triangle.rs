@@ -36,7 +36,7 @@ pub(in crate::raster) struct SmallTriangle {
     depth_min: u32,
 }
 
-/// What [`SmallTriangle::fit`] made of three corners.
+/// Outcome of [`SmallTriangle::fit`].
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) enum Fit {
     /// It fits.
@@ -56,6 +56,9 @@ pub(in crate::raster) struct Covered {
 
 impl SmallTriangle {
     #[inline]
+    /// Sets up a triangle from its corners on the screen, culled and cut to the image as [`Setup::new`] does it.
+    ///
+    /// [`Setup::new`]: super::Setup::new
     pub(in crate::raster) fn fit(
         [a, mut b, mut c]: [ScreenPoint; 3],
         bits: SubpixelBits,
@@ -68,7 +71,7 @@ impl SmallTriangle {
         if bounds.is_empty() {
             return Fit::Nothing;
         }
-        // Snapped coordinates are at most 2^29 in magnitude. With 16 bits a box of half a pixel is not worth a thing.
+        // Snapped coordinates are at most 2^29 in magnitude. With 16 sub-pixel bits the limit is half a pixel: too rare.
         if bits != SubpixelBits::Eight || x_max - x_min > LIMIT || y_max - y_min > LIMIT {
             return Fit::Large;
         }

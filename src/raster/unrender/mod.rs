@@ -66,7 +66,7 @@ impl ViewSubset {
 /// samples, in the reference and in the picture. Sums of integers have no order, so views may be looked at in
 /// parallel.
 pub trait Unrender: Send + Sync + Sized + 'static {
-    /// What one thread needs to evaluate changes.
+    /// Buffers of one thread that evaluates changes.
     type Scratch: Send + Sync + 'static;
 
     /// Draws the model in every view of the set. `reference` has the luma sums of every view (see

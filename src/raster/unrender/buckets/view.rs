@@ -32,12 +32,12 @@ pub(super) struct BucketView {
     buckets: Buckets,
     pub(super) keys: Grid<SampleKey>,
     pub(super) luma: Grid<u8>,
-    /// What the picture is compared with: the luma sums of every pixel.
+    /// Luma sums of every pixel of the picture that this one is compared with.
     reference: Grid<u16>,
     background: u8,
 }
 
-/// What one part of the views needs.
+/// Buffers of a thread that works on some of the views.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartScratch {
     stamps: Stamps,
@@ -51,7 +51,7 @@ pub(super) struct PartScratch {
 }
 
 impl PartScratch {
-    /// Buffers for a model with so many triangles.
+    /// Buffers for a model with this number of triangles.
     pub(super) fn new(triangles: usize) -> Self {
         Self {
             stamps: Stamps::new(triangles),
@@ -193,18 +193,54 @@ impl BucketView {
         geometry: &[(FaceGeometry, [DVec3; 3])],
         scratch: &mut PartScratch,
     ) -> PixelRect {
+        let region = self.set_up(model, change, geometry, scratch);
+        scratch.keys.clear();
+        scratch.luma.clear();
+        if region.is_empty() {
+            return region;
+        }
+        let uncovered = self.clear_removed(change, region, scratch);
+        let PartScratch {
+            stamps,
+            found,
+            setups,
+            keys,
+            luma,
+            ..
+        } = scratch;
+        if !uncovered.is_empty() {
+            self.buckets.query(uncovered, stamps, found);
+            let cull = self.view.cull;
+            for &id in found.iter() {
+                let face = self.face(model, id);
+                face.pieces(&self.projector, cull, |setup, paint| {
+                    draw(setup, paint, id, [uncovered, region], keys, luma);
+                });
+            }
+        }
+        for (id, setup, paint) in setups {
+            draw(setup, paint, *id, [region; 2], keys, luma);
+        }
+        region
+    }
+
+    /// Sets up the added triangles, and returns the bounding box of those that go and come.
+    fn set_up(
+        &self,
+        model: &Model,
+        change: &Change<'_>,
+        geometry: &[(FaceGeometry, [DVec3; 3])],
+        scratch: &mut PartScratch,
+    ) -> PixelRect {
+        let moved = change.moved.iter().map(|m| self.projector.screen(m.1));
         scratch.moved.clear();
-        scratch
-            .moved
-            .extend(change.moved.iter().map(|m| self.projector.screen(m.1)));
+        scratch.moved.extend(moved);
         scratch.shaded.clear();
         if !self.intensities.is_empty() {
-            scratch.shaded.extend(
-                change
-                    .normals
-                    .iter()
-                    .map(|&(v, n)| self.shader.intensity(model.position_after(change, v), n)),
-            );
+            let normals = change.normals.iter();
+            let intensity =
+                |&(v, n): &(u32, DVec3)| self.shader.intensity(model.position_after(change, v), n);
+            scratch.shaded.extend(normals.map(intensity));
         }
         let mut region = PixelRect::EMPTY;
         for &id in change.removed {
@@ -213,13 +249,8 @@ impl BucketView {
         scratch.setups.clear();
         scratch.added_extents.clear();
         for (added, geometry) in change.added.iter().zip(geometry) {
-            let face = self.face_after(
-                model,
-                change,
-                added,
-                geometry,
-                (&scratch.moved, &scratch.shaded),
-            );
+            let after = (&*scratch.moved, &*scratch.shaded);
+            let face = self.face_after(model, change, added, geometry, after);
             let mut extent = PixelRect::EMPTY;
             face.pieces(&self.projector, self.view.cull, |setup, paint| {
                 extent = extent.union(setup.bounds());
@@ -228,69 +259,39 @@ impl BucketView {
             scratch.added_extents.push(extent);
             region = region.union(extent);
         }
-        scratch.keys.clear();
-        scratch.luma.clear();
-        if region.is_empty() {
-            return region;
-        }
-        // Pixels that show no removed triangle keep what they show, unless an added one is nearer.
+        region
+    }
+
+    /// Copies the region to the scratch planes, the background where it shows a removed triangle, and returns the
+    /// bounding box of such pixels.
+    fn clear_removed(
+        &self,
+        change: &Change<'_>,
+        region: PixelRect,
+        scratch: &mut PartScratch,
+    ) -> PixelRect {
         scratch.stamps.leave_out(change.removed);
         let mut uncovered = PixelRect::EMPTY;
         for y in region.y0..region.y1 {
             let start = y as usize * self.luma.width() as usize;
             let row = start + region.x0 as usize..start + region.x1 as usize;
-            let shown = self.keys.values()[row.clone()]
-                .iter()
-                .zip(&self.luma.values()[row]);
+            let keys = &self.keys.values()[row.clone()];
+            let shown = keys.iter().zip(&self.luma.values()[row]);
             for (x, (&key, &luma)) in (region.x0..).zip(shown) {
                 if !key.is_background() && scratch.stamps.is_left_out(key.id()) {
                     scratch.keys.push(SampleKey::BACKGROUND);
                     scratch.luma.push(self.background);
-                    let pixel = PixelRect {
-                        x0: x,
-                        y0: y,
-                        x1: x + 1,
-                        y1: y + 1,
-                    };
-                    uncovered = uncovered.union(pixel);
+                    uncovered = uncovered.union(PixelRect::pixel(x, y));
                 } else {
                     scratch.keys.push(key);
                     scratch.luma.push(luma);
                 }
             }
         }
-        // The others show what the buckets find behind.
-        if !uncovered.is_empty() {
-            self.buckets
-                .query(uncovered, &mut scratch.stamps, &mut scratch.found);
-            for &id in &scratch.found {
-                self.face(model, id)
-                    .pieces(&self.projector, self.view.cull, |setup, paint| {
-                        draw(
-                            setup,
-                            paint,
-                            id,
-                            [uncovered, region],
-                            &mut scratch.keys,
-                            &mut scratch.luma,
-                        );
-                    });
-            }
-        }
-        for (id, setup, paint) in &scratch.setups {
-            draw(
-                setup,
-                paint,
-                *id,
-                [region; 2],
-                &mut scratch.keys,
-                &mut scratch.luma,
-            );
-        }
-        region
+        uncovered
     }
 
-    /// What the scratch would add to the squared differences of the pixels that the region meets: each is summed anew.
+    /// Returns what the drawn region would add to the squared differences; the pixels that it meets are summed anew.
     pub(super) fn difference(&self, region: PixelRect, scratch: &PartScratch) -> i64 {
         if region.is_empty() {
             return 0;

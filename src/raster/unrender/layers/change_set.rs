@@ -1,4 +1,4 @@
-//! A change of the mesh before it is looked at in any view: what every view needs of it.
+//! [`ChangeSet`]: a change of the mesh with all that is the same in every view.
 
 use glam::DVec3;
 
@@ -40,11 +40,11 @@ pub(super) struct After {
     pub(super) corners: [Corner; 3],
     pub(super) positions: [DVec3; 3],
     pub(super) colors: [[f64; 3]; 3],
-    /// What flat shading needs.
+    /// Normal and centroid, for flat shading; zeros where no view needs them.
     pub(super) geometry: FaceGeometry,
 }
 
-/// What happens to a triangle.
+/// Fate of a triangle in a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fate {
     /// Nothing.
@@ -75,7 +75,7 @@ pub(super) struct ChangeSet {
 }
 
 impl ChangeSet {
-    /// Buffers for a model with so many triangles.
+    /// Buffers for a model with this number of triangles.
     pub(super) fn new(triangles: usize) -> Self {
         Self {
             gone: Vec::new(),
@@ -101,7 +101,7 @@ impl ChangeSet {
         self.fates[id as usize] == 1
     }
 
-    /// What happens to a triangle.
+    /// The fate of a triangle.
     #[inline]
     pub(super) fn fate(&self, id: u32) -> Fate {
         match self.fates[id as usize] {

@@ -1,23 +1,14 @@
-//! How the picture of one view, and its layers, take on a change.
+//! Commit: brings the picture of one view and its layers up to date.
 
 use super::{
     fragment_lists::TILE,
-    probe::ViewDelta,
     view::{LayerView, ProbeContext},
+    view_delta::ViewDelta,
 };
-use crate::{
-    raster::{
-        Face, Projector, SampleKey, ScreenVertex,
-        draw::{
-            projector::ScreenPoint,
-            small_triangle::{Fit, SmallTriangle},
-        },
-    },
-    view::Cull,
-};
+use crate::raster::SampleKey;
 
 impl LayerView {
-    /// Makes the change that the look has seen.
+    /// Makes the change that `delta` is the probe of.
     pub(super) fn apply(&mut self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         delta.swaps.clear();
         delta.enter(self.region(context));
@@ -76,41 +67,5 @@ impl LayerView {
             *sum = *sum - u16::from(old) + u16::from(tone);
         }
         self.lists.set_luma(sample, tone);
-    }
-}
-
-impl ViewDelta {
-    /// Calls `visit(sample, (x, y), depth)` for every fragment of a face in the region.
-    #[inline]
-    pub(super) fn fragments(
-        &mut self,
-        face: &Face,
-        projector: &Projector,
-        cull: Cull,
-        width: usize,
-        mut visit: impl FnMut(usize, (i32, i32), u32),
-    ) {
-        if !face.screen.iter().any(ScreenVertex::is_outside) {
-            let corners = face.screen.map(ScreenPoint::from);
-            match SmallTriangle::fit(corners, projector.bits(), cull, projector.image()) {
-                Fit::Nothing => return,
-                Fit::Small(small) => {
-                    let origin = (self.region.x0, self.region.y0);
-                    let count = small.list(origin, self.shift, &mut self.covered);
-                    for j in 0..count {
-                        let at = self.covered.at[j];
-                        let depth = small.depth(self.covered.above[j]);
-                        visit(self.sample(at, width), self.place(at), depth);
-                    }
-                    return;
-                }
-                Fit::Large => {}
-            }
-        }
-        face.pieces(projector, cull, |setup, _| {
-            setup.fragments(projector.image(), |x, y, depth| {
-                visit(y as usize * width + x as usize, (x, y), depth);
-            });
-        });
     }
 }

@@ -1,8 +1,8 @@
 //! Layers of one picture: every fragment at every sample, sorted by key (Atherton 1981's object buffer, which Lindstrom &
 //! Turk 2000 call attractive and too expensive for its time).
 //!
-//! What a look at a change needs of most samples is packed into one word: the nearest triangle, its luma, the luma of the
-//! reference, and the upper half of the depth. The rest of the depth lies in a plane of its own, and the fragments behind
+//! One word per sample holds what decides most of them: the nearest triangle, its luma, the luma of the reference, and
+//! the upper half of the depth. The rest of the depth lies in a plane of its own, and the fragments behind
 //! in blocks of an arena whose capacities are powers of two. A block that became too small is reused for other samples;
 //! blocks never shrink. Memory: 20 bytes for every sample and 8 to 16 for every fragment that is not the nearest, at the
 //! deepest moment of its sample.
@@ -12,7 +12,7 @@ use crate::raster::SampleKey;
 /// Samples in a row and column of a tile, as a power of two.
 pub(super) const TILE: u32 = 3;
 
-/// What a sample shows: id, luma, luma of the reference (where pixels have one sample), upper half of the depth.
+/// The visible state of a sample: id, luma, luma of the reference (where pixels have one sample), upper half of the depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shown(u64);
 
@@ -52,7 +52,7 @@ impl Shown {
     }
 }
 
-/// Where the fragments behind the nearest lie.
+/// Place in the arena of the fragments behind the nearest.
 #[derive(Clone, Copy, Debug, Default)]
 struct Block {
     start: u32,
@@ -98,7 +98,7 @@ pub(super) struct FragmentLists {
 }
 
 impl FragmentLists {
-    /// FragmentLists without a fragment, in so many tiles. `nothing` is what an empty sample shows, above every key;
+    /// Lists without a fragment, in this number of tiles. `nothing` is the key of an empty sample, above every other;
     /// `reference` may be empty.
     pub(super) fn new(
         samples: usize,
@@ -124,12 +124,12 @@ impl FragmentLists {
         }
     }
 
-    /// What an empty sample shows.
+    /// The key of an empty sample.
     pub(super) fn nothing(&self) -> SampleKey {
         self.nothing
     }
 
-    /// What every sample shows.
+    /// The visible state of every sample.
     #[inline]
     pub(super) fn shown(&self) -> &[Shown] {
         &self.shown

@@ -1,4 +1,5 @@
-//! How deep a picture is, in small squares: what lies behind all of a square is not seen there.
+//! Hierarchical z: the greatest visible depth of small squares of a picture. A triangle behind all of a square is not
+//! seen there.
 
 use super::fragment_lists::Shown;
 use crate::raster::PixelRect;

@@ -13,12 +13,13 @@ mod hi_z;
 mod probe;
 mod projected;
 mod view;
+mod view_delta;
 
 use self::{
     change_set::ChangeSet,
-    probe::ViewDelta,
     projected::{Projected, ScreenBoxes},
     view::{LayerView, ProbeContext},
+    view_delta::ViewDelta,
 };
 use super::{Change, Model, Unrender, ViewSubset};
 use crate::{
@@ -67,14 +68,14 @@ struct PartScratch {
 #[derive(Clone, Debug)]
 struct Part {
     views: Vec<LayerView>,
-    /// Where they are in the set.
+    /// Their indices in the set.
     indices: Vec<usize>,
     lanes: Projected,
     /// Gouraud shading: intensities by vertex and view.
     intensities: Vec<f64>,
     /// Samples that show a triangle, by triangle and view.
     counts: Vec<u32>,
-    /// Where that is not 0.
+    /// By triangle, one bit for every view where its count is not 0.
     seen: Vec<u64>,
 }
 
@@ -236,7 +237,7 @@ impl Part {
     }
 }
 
-/// Bits of so many lanes, at most 64.
+/// The lowest `lanes` bits, at most 64.
 fn all(lanes: usize) -> u64 {
     match lanes {
         0 => 0,

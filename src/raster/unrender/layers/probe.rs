@@ -1,64 +1,24 @@
-//! What a change does to the picture of one view.
+//! Probe: finds the difference that a change makes to the picture of one view, without making it.
 //!
-//! A look goes through the pixels of the bounding box of the triangles that go and come. Where one that goes is the
+//! It goes through the pixels of the bounding box of the triangles that go and come. Where one that goes is the
 //! nearest, the next layer that stays takes its place; the fresh triangles compete for every pixel they cover. Triangles
 //! that only look different are visited where they are seen. Most fresh fragments are decided by a bound: no layer behind
-//! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others look at the layers.
+//! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others search the layers.
 
 use super::{
     super::difference,
     change_set::After,
     projected::clipped_pixels,
     view::{LayerView, ProbeContext},
+    view_delta::{Piece, ViewDelta},
 };
 use crate::raster::{
     Face, Paint, PixelRect, SampleKey, ScreenVertex, Setup,
-    draw::small_triangle::{Covered, Fit, SmallTriangle},
+    draw::small_triangle::{Fit, SmallTriangle},
 };
 
-/// A fresh triangle, or a piece of one, that won a pixel.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    level: u8,
-    /// What pixels need that have no level in common.
-    shaded: Option<(Setup, Paint)>,
-}
-
-/// Buffers of a delta, and what it found.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ViewDelta {
-    /// The pixels that may change, and the logarithm of the stride of the buffers below.
-    pub(super) region: PixelRect,
-    pub(super) shift: u32,
-    /// The buffers below hold the region; not where nothing came near enough to be seen.
-    entered: bool,
-    /// What a key must be below to be seen at a pixel of the region. Pixels that still show what they did, or what
-    /// was behind: a lower bound of that; others: the nearest fresh key. After the look the keys of touched pixels.
-    pub(super) slots: Vec<SampleKey>,
-    /// By pixel: 0 as before, 1 what was behind, more is a piece.
-    who: Vec<u32>,
-    /// Pixels of the region that show something else, and their luma afterwards.
-    pub(super) touched: Vec<u32>,
-    pub(super) count: usize,
-    pub(super) tones: Vec<u8>,
-    /// Samples of the picture that only look different, and their luma afterwards.
-    pub(super) restyled: Vec<([u16; 2], u8)>,
-    /// After a commit: for every touched sample the triangle that it showed and the one it shows; ids above the last
-    /// triangle are the background.
-    pub(super) swaps: Vec<(u32, u32)>,
-    pieces: Vec<Piece>,
-    pub(super) covered: Covered,
-    /// Columns of a row that show a triangle.
-    columns: Vec<i32>,
-    /// By pixel of the picture: the change of the sum of its samples; 0 between looks.
-    deltas: Vec<i32>,
-    pixels: Vec<u32>,
-    /// New intensities of the vertices whose normals change, where this view needs them.
-    intensities: Vec<f64>,
-}
-
 impl LayerView {
-    /// What the change does to the squared differences of this view.
+    /// Fills `delta`, and returns what the change would add to the squared differences of this view.
     pub(super) fn probe(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) -> i64 {
         delta.count = 0;
         delta.restyled.clear();
@@ -170,13 +130,13 @@ impl LayerView {
         delta.count = count;
     }
 
-    /// Whether a fresh key is seen at a pixel, where [`ViewDelta::may_win`] has not ruled it out.
+    /// True where a fresh key is seen at a pixel for which [`ViewDelta::may_win`] holds.
     #[inline]
     fn wins(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32, key: SampleKey) -> bool {
         key < delta.slots[at as usize] || self.wins_exactly(context, delta, at, key)
     }
 
-    /// Whether a fresh key that is not below the slot of a pixel is seen there all the same.
+    /// True where a fresh key that is not below the slot of a pixel, a lower bound, is seen there all the same.
     fn wins_exactly(
         &self,
         context: &ProbeContext<'_>,
@@ -290,7 +250,7 @@ impl LayerView {
         any
     }
 
-    /// What a small fresh triangle looks like.
+    /// Level or paint of a small fresh triangle.
     #[inline]
     fn piece(&self, context: &ProbeContext<'_>, face: &After, delta: &ViewDelta) -> Piece {
         if self.plain {
@@ -312,7 +272,7 @@ impl LayerView {
         }
     }
 
-    /// The luma of every touched pixel.
+    /// Finds the luma of every touched pixel.
     fn tone(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         delta.tones.clear();
         for j in 0..delta.count {
@@ -342,7 +302,7 @@ impl LayerView {
         }
     }
 
-    /// The luma of pixels that keep their triangle, which looks different.
+    /// Finds the luma of pixels that keep their triangle where it looks different.
     fn restyle(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
         for after in &context.changes.restyled {
@@ -385,7 +345,7 @@ impl LayerView {
         }
     }
 
-    /// What the luma of the touched and restyled samples add to the squared differences.
+    /// Sums what the touched and restyled samples add to the squared differences.
     fn sum(&self, delta: &mut ViewDelta) -> i64 {
         let shown = self.lists.shown();
         let mut total = 0;
@@ -428,63 +388,5 @@ impl LayerView {
         }
         (delta.deltas, delta.pixels) = (deltas, pixels);
         total
-    }
-}
-
-impl ViewDelta {
-    /// Makes room for a region; the buffers still hold the last one.
-    fn begin(&mut self, region: PixelRect) {
-        self.enter(region);
-        let size = region.height() << self.shift;
-        if self.slots.len() < size + 1 {
-            self.slots.resize(size + 1, SampleKey::BACKGROUND);
-            self.touched.resize(size + 1, 0);
-            self.who.resize(size + 1, 0);
-        }
-    }
-
-    /// Makes indices those of a region.
-    pub(super) fn enter(&mut self, region: PixelRect) {
-        self.region = region;
-        self.shift = region.width().next_power_of_two().trailing_zeros();
-    }
-
-    /// False where a fresh key is certainly not seen at a pixel.
-    #[inline]
-    fn may_win(&self, at: u32, key: SampleKey) -> bool {
-        key.bits() >> 48 <= self.slots[at as usize].bits() >> 48 || self.who[at as usize] == 1
-    }
-
-    /// Gives a pixel to a piece.
-    #[inline]
-    fn win(&mut self, at: u32, key: SampleKey, number: u32) {
-        let i = at as usize;
-        self.touched[self.count] = at;
-        self.count += usize::from(self.who[i] == 0);
-        self.slots[i] = key;
-        self.who[i] = number;
-    }
-
-    /// The sample of the picture where a pixel of the region is.
-    #[inline]
-    pub(super) fn sample(&self, at: u32, width: usize) -> usize {
-        let (row, column) = (at >> self.shift, at & ((1 << self.shift) - 1));
-        (self.region.y0 as usize + row as usize) * width + self.region.x0 as usize + column as usize
-    }
-
-    /// Column and row of a pixel of the region.
-    #[inline]
-    pub(super) fn place(&self, at: u32) -> (i32, i32) {
-        let (row, column) = (at >> self.shift, at & ((1 << self.shift) - 1));
-        (self.region.x0 + column as i32, self.region.y0 + row as i32)
-    }
-
-    /// True for pixels of the region that show something else.
-    pub(super) fn is_touched(&self, x: i32, y: i32) -> bool {
-        let r = self.region;
-        if x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1 {
-            return false;
-        }
-        self.who[((y - r.y0) as usize) << self.shift | (x - r.x0) as usize] != 0
     }
 }

@@ -1,4 +1,5 @@
-//! Every vertex on the screens of several views at once, so that what a change needs of all views lies together.
+//! Projected vertices: every vertex on the screens of several views at once, so that what a change needs of all views
+//! lies together. A lane is a view of these.
 
 use glam::DVec3;
 
@@ -22,7 +23,7 @@ pub(super) struct Projected {
 }
 
 impl Projected {
-    /// No vertex yet, on so many screens; `shaded` where attributes are interpolated on one of them.
+    /// Zeros for `vertices` vertices in `lanes` views; `shaded` where attributes are interpolated in one of them.
     pub(super) fn new(lanes: usize, vertices: usize, shaded: bool) -> Self {
         Self {
             lanes,
@@ -35,7 +36,7 @@ impl Projected {
         }
     }
 
-    /// Makes room for so many vertices.
+    /// Makes room for this number of vertices.
     pub(super) fn resize(&mut self, vertices: usize) {
         let room = vertices * 3 * self.lanes;
         if self.places.len() < room {
@@ -126,7 +127,7 @@ pub(super) struct ScreenBoxes {
 }
 
 impl ScreenBoxes {
-    /// Empty boxes in so many views.
+    /// Makes the boxes empty, one for every view.
     pub(super) fn clear(&mut self, lanes: usize) {
         let most = [&mut self.x_min, &mut self.y_min, &mut self.depth_min];
         for list in most {

@@ -15,7 +15,7 @@ use crate::{
     view::{Interpolation, View, ViewSet},
 };
 
-/// What a look in any view of a part needs.
+/// Input of [`LayerView::probe`]: the change, sorted out and projected to all views of a part, and the view in hand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ProbeContext<'a> {
     pub(super) model: &'a Model,
@@ -26,12 +26,12 @@ pub(super) struct ProbeContext<'a> {
     pub(super) moved: &'a Projected,
     /// Intensities by vertex and view; empty without Gouraud shading.
     pub(super) intensities: &'a [f64],
-    /// ScreenBoxes of the fresh triangles, and of all that go and come.
+    /// Bounding boxes of the fresh triangles, and of all that go and come.
     pub(super) fresh: &'a ScreenBoxes,
     pub(super) all: &'a ScreenBoxes,
     /// Views, one bit for each, in which a triangle that goes is seen.
     pub(super) uncovers: u64,
-    /// Where a triangle is seen, by triangle.
+    /// By triangle, one bit for every view in which it is seen.
     pub(super) seen: &'a [u64],
     pub(super) lane: usize,
     pub(super) lane_count: usize,
@@ -50,7 +50,7 @@ pub(super) struct LayerView {
     pub(super) gouraud: bool,
     pub(super) background: u8,
     pub(super) lists: FragmentLists,
-    /// Where pixels have several samples, their sums: of the reference and now.
+    /// By pixel, the luma sums of the reference and of the picture; empty where pixels have one sample.
     pub(super) sums: Vec<[u16; 2]>,
     pub(super) hi_z: HiZ,
     pub(super) width: usize,
@@ -199,7 +199,7 @@ impl LayerView {
         }
     }
 
-    /// What a triangle of the model looks like.
+    /// Paint of a triangle of the model.
     pub(super) fn paint_now(&self, model: &Model, id: u32, intensities: [f64; 3]) -> Paint {
         let colors = model.colors.get(id as usize);
         if self.gouraud {
@@ -309,12 +309,7 @@ impl LayerView {
 
     /// The luma of a face at a pixel that it covers: of the nearest of its pieces.
     pub(super) fn luma_at(&self, face: &Face, (x, y): (i32, i32)) -> u8 {
-        let pixel = PixelRect {
-            x0: x,
-            y0: y,
-            x1: x + 1,
-            y1: y + 1,
-        };
+        let pixel = PixelRect::pixel(x, y);
         let mut nearest = None;
         face.pieces(&self.projector, self.view.cull, |setup, paint| {
             setup.fragments(pixel, |x, y, depth| {
