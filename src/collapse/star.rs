@@ -1,7 +1,7 @@
 //! The star of a vertex: the faces that a move of it changes, the directions it may take, and its new attributes.
 //!
 //! A vertex inside a sheet or on a boundary may go anywhere its faces let it. One on a feature (a seam, a border of
-//! materials) moves along its normal only: pictures do not show where textures lie, so nothing would judge a sideways
+//! materials) moves along its normal only: no cost tells where textures lie, so nothing would judge a sideways
 //! move. Locked vertices, those at edges with more than two faces, and those where sheets merely touch stay.
 //!
 //! Attributes stay where they are on the surface: each channel that has one value at the vertex takes the value at the

@@ -308,3 +308,14 @@ fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
         assert!(looks < 12.0, "{looks} looks for each face");
     }
 }
+
+#[test]
+fn a_vertex_that_is_not_there_has_no_edge_to_a_hub() {
+    let mesh = disc(100);
+    let live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let unknown = live.vertex_ids();
+    for hub in 0..unknown {
+        assert_eq!(live.find_edge(hub, unknown), None);
+        assert_eq!(live.find_edge(unknown, hub), None);
+    }
+}

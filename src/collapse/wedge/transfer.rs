@@ -1,4 +1,4 @@
-//! Attributes of the new vertex: which corners share a wedge, and its values.
+//! The wedges of a new vertex: corners that share one, and its values.
 //!
 //! Algorithm (seams of Lindstrom & Turk 2000, section 3.3, by classes of corners), for each channel by itself so that
 //! a normal discontinuity does not tear texture coordinates: corners of the star at one end with equal values are one
@@ -10,156 +10,12 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{EdgeStar, LiveMesh, Patch, StarFace, pinch::Forest};
+use super::{WedgeRows, same_bits};
 use crate::{
-    mesh::{Attributes, Channel, ChannelKind},
+    collapse::{EdgeStar, LiveMesh, Patch, pinch::Forest},
+    mesh::{Channel, ChannelKind},
     num::{Precision, math},
 };
-
-/// The values of all wedges, rows that patches appended included.
-#[derive(Clone, Debug, Default)]
-pub struct WedgeRows {
-    channels: Vec<Channel>,
-    stride: usize,
-    values: Vec<f64>,
-}
-
-impl WedgeRows {
-    /// A copy of the rows of `attributes`.
-    #[must_use]
-    pub fn of(attributes: &Attributes) -> Self {
-        Self {
-            channels: attributes.channels().to_vec(),
-            stride: attributes.stride(),
-            values: attributes.values().to_vec(),
-        }
-    }
-
-    /// The channels.
-    #[must_use]
-    pub fn channels(&self) -> &[Channel] {
-        &self.channels
-    }
-
-    /// The meanings of the channels.
-    #[must_use]
-    pub fn kinds(&self) -> Vec<ChannelKind> {
-        self.channels.iter().map(|c| c.kind).collect()
-    }
-
-    /// Values in a row; 0 where there are no attributes.
-    #[must_use]
-    pub fn stride(&self) -> usize {
-        self.stride
-    }
-
-    /// Number of rows.
-    #[must_use]
-    pub fn count(&self) -> u32 {
-        self.values.len().checked_div(self.stride).unwrap_or(0) as u32
-    }
-
-    /// The values of a wedge.
-    ///
-    /// # Panics
-    /// Where there is no such wedge.
-    #[must_use]
-    pub fn row(&self, wedge: u32) -> &[f64] {
-        &self.values[wedge as usize * self.stride..][..self.stride]
-    }
-
-    /// True where a channel is one whose discontinuities are features.
-    #[must_use]
-    pub fn has_feature_channels(&self) -> bool {
-        self.channels.iter().any(|c| makes_features(c.kind))
-    }
-
-    pub(super) fn append(&mut self, rows: &[f64]) {
-        self.values.extend_from_slice(rows);
-    }
-
-    pub(super) fn truncate(&mut self, values: usize) {
-        self.values.truncate(self.values.len() - values);
-    }
-
-    pub(super) fn value(&self, channel: Channel, wedge: u32) -> &[f64] {
-        &self.row(wedge)[channel.offset..][..channel.kind.width()]
-    }
-
-    pub(super) fn same(&self, channel: Channel, a: u32, b: u32) -> bool {
-        a == b || same_bits(self.value(channel, a), self.value(channel, b))
-    }
-}
-
-/// Normals differ at almost every edge of a flat-shaded export; that alone is no feature.
-pub(super) fn makes_features(kind: ChannelKind) -> bool {
-    kind != ChannelKind::Normal
-}
-
-pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {
-    a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
-}
-
-/// True where attributes or materials differ between the star's faces at the edge `ends`, or its texture is mirrored
-/// there; `faces` has at least those of the star at that edge, in its order.
-#[must_use]
-pub(super) fn is_feature<'a>(
-    live: &LiveMesh,
-    faces: impl Iterator<Item = &'a StarFace>,
-    ends: [u32; 2],
-) -> bool {
-    let corner = |f: &StarFace, v: u32| f.corners.iter().position(|&c| c == v);
-    let at_edge = |f: &StarFace| Some([corner(f, ends[0])?, corner(f, ends[1])?]);
-    let mut at = faces.filter_map(|f| Some((f, at_edge(f)?)));
-    let Some((first, first_at)) = at.next() else {
-        return false;
-    };
-    at.any(|(other, other_at)| {
-        let faces = [first, other].map(|f| (f.id, live.wedges(f.id)));
-        differ(live, faces, [first_at, other_at], makes_features)
-    })
-}
-
-/// True where two faces, given with their wedges, differ along a common edge in their material, in the values of a
-/// channel that `counts` at either end (`at`: which corners those are, the same end first), or where one of them is
-/// mirrored in texture space.
-pub(super) fn differ(
-    live: &LiveMesh,
-    faces: [(u32, [u32; 3]); 2],
-    at: [[usize; 2]; 2],
-    counts: impl Fn(ChannelKind) -> bool,
-) -> bool {
-    let [(f, a), (g, b)] = faces;
-    if live.material(f) != live.material(g) {
-        return true;
-    }
-    let rows = live.rows();
-    rows.channels.iter().filter(|c| counts(c.kind)).any(|&c| {
-        let differs = |end: usize| !rows.same(c, a[at[0][end]], b[at[1][end]]);
-        let mirrored = || {
-            // Faces that run along the edge the same way show different sides.
-            let forward = |at: [usize; 2]| (at[0] + 1) % 3 == at[1];
-            let side = if forward(at[0]) == forward(at[1]) {
-                -1.0
-            } else {
-                1.0
-            };
-            matches!(c.kind, ChannelKind::TexCoord(_))
-                && side * texture_area(rows, c, a) * texture_area(rows, c, b) < 0.0
-        };
-        differs(0) || differs(1) || mirrored()
-    })
-}
-
-/// Twice the signed area of a triangle in texture space; NaN where it has no texture coordinates.
-#[must_use]
-pub fn texture_area(rows: &WedgeRows, channel: Channel, wedges: [u32; 3]) -> f64 {
-    let [a, b, c] = wedges.map(|w| {
-        let value = rows.value(channel, w);
-        [value[0], value[1]]
-    });
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
 
 /// A corner of the star at one end of its edge.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +31,7 @@ const FEW: usize = 48;
 
 /// Buffers of [`transfer`]; all are equal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct WedgeScratch {
+pub(in crate::collapse) struct WedgeScratch {
     corners: Vec<Corner>,
     values: Vec<f64>,
     /// For every class, the first wedge of a corner at either end of the edge.
@@ -191,7 +47,12 @@ impl PartialEq for WedgeScratch {
 }
 
 /// Gives the new vertex its wedges in `patch.added` and appends their rows to `patch.rows`.
-pub(super) fn transfer(live: &LiveMesh, star: &EdgeStar, position: DVec3, patch: &mut Patch) {
+pub(in crate::collapse) fn transfer(
+    live: &LiveMesh,
+    star: &EdgeStar,
+    position: DVec3,
+    patch: &mut Patch,
+) {
     let rows = live.rows();
     if rows.stride == 0 {
         return;
@@ -283,8 +144,14 @@ fn compare_bits(a: &[f64], b: &[f64]) -> Ordering {
 /// Numbers the classes of corners in one channel: a class is the index of its first corner.
 fn classify(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
     if corners.len() > FEW {
-        return classify_many(rows, channel, corners);
+        classify_many(rows, channel, corners);
+    } else {
+        classify_few(rows, channel, corners);
     }
+}
+
+/// [`classify`] by comparing all pairs.
+fn classify_few(rows: &WedgeRows, channel: Channel, corners: &mut [Corner]) {
     for (i, corner) in corners.iter_mut().enumerate() {
         corner.class = i;
     }
@@ -377,5 +244,65 @@ fn interpolate(
         for x in into.iter_mut() {
             *x = precision.round(*x);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Attributes, Mesh, generate};
+
+    /// Corners as of a star with `count` faces, of which every fifth has both ends, with few different values.
+    fn corners(count: usize, wedges: u32, seed: u32) -> Vec<Corner> {
+        let mut x = seed;
+        let mut next = |below: u32| {
+            x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (x >> 8) % below
+        };
+        let ends = |face: usize| {
+            if face % 5 == 0 {
+                0..2
+            } else {
+                face % 2..face % 2 + 1
+            }
+        };
+        let corner = |face, end| (face, end);
+        let all = (0..count).flat_map(|face| ends(face).map(move |end| corner(face, end)));
+        all.map(|(face, end)| Corner {
+            face,
+            end,
+            wedge: next(wedges),
+            class: 0,
+        })
+        .collect()
+    }
+
+    #[test]
+    fn classes_found_by_sorting_are_those_of_comparing_all_pairs() {
+        let rows = WedgeRows::of(textured().attributes());
+        for (seed, wedges) in (0..40).zip([2, 5, 12, 40].into_iter().cycle()) {
+            let mut pairs = corners(30, wedges, seed);
+            let mut sorted = pairs.clone();
+            for &channel in rows.channels() {
+                classify_few(&rows, channel, &mut pairs);
+                classify_many(&rows, channel, &mut sorted);
+                let classes = |corners: &[Corner]| -> Vec<usize> {
+                    corners.iter().map(|c| c.class).collect()
+                };
+                assert_eq!(classes(&pairs), classes(&sorted), "{seed}");
+            }
+        }
+    }
+
+    /// 40 wedges, of which some have equal values.
+    fn textured() -> Mesh {
+        let mut parts = generate::grid(4, 4, generate::Height::Polynomial).into_parts();
+        let corners =
+            (0..parts.triangles.len() as u32).map(|t| [0, 1, 2].map(|k| (3 * t + k) % 40));
+        let values = (0..40).flat_map(|w| [f64::from(w % 7) * 0.125, f64::from(w % 2)]);
+        let kinds = [ChannelKind::TexCoord(0)];
+        parts.attributes =
+            Attributes::new(&kinds, values.collect(), corners.collect()).expect("valid");
+        Mesh::new(parts).expect("valid")
     }
 }
