@@ -47,7 +47,7 @@ fn methods(c: &mut Criterion) {
     group.finish();
 }
 
-/// A row of the README's table (benches/table.py): its name there, the model, the target and what else is asked for.
+/// A row of the README's table (benches/measure.py table): its name there, the model, the target and what else is asked for.
 struct Row {
     name: &'static str,
     model: &'static str,
@@ -166,7 +166,7 @@ fn reading(c: &mut Criterion) {
     group.finish();
 }
 
-/// The cost of a collapse by size; benches/curve.py has more sizes, methods and models.
+/// The cost of a collapse by size; benches/measure.py curve has more sizes, methods and models.
 fn scale(c: &mut Criterion) {
     let mut group = c.benchmark_group("scale");
     group.sample_size(10);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One run of another program, file to file: race.py PROGRAM IN.ply OUT.ply TRIANGLES. Started by benches/table.py --race.
+"""One run of another program, file to file: race.py PROGRAM IN.ply OUT.ply TRIANGLES. Started by benches/measure.py table --race.
 
 Prints the seconds that simplification alone took, without Python, imports and files. Meshes are binary PLY with float
 positions and triangles, as the Stanford models are; vertices at equal places are united before, as lodmark does.

@@ -5,10 +5,10 @@ A lane is a build (debug, release, compiled for this very CPU, for x86-64-v2, fo
 every lane `lodmark selfcheck` recomputes the whole golden set. The aarch64 lane runs aarch64 code under qemu on x86-64:
 that tests code generation, SIMD widths and libm, not another floating-point unit.
 
-    tests/lanes.py                      run the lanes that this machine can; name the others
-    tests/lanes.py --require            fail where one cannot be run
-    tests/lanes.py --provision          first install what the aarch64 lane needs (Debian packages, as root)
-    tests/lanes.py release aarch64      only lanes whose name begins so
+    tests/reproduce.py                      run the lanes that this machine can; name the others
+    tests/reproduce.py --require            fail where one cannot be run
+    tests/reproduce.py --provision          first install what the aarch64 lane needs (Debian packages, as root)
+    tests/reproduce.py release aarch64      only lanes whose name begins so
 
 Exit code: 0 all lanes equal, 1 a lane differs or fails, 2 a required lane is missing. Writes below target/ only.
 """
@@ -204,7 +204,7 @@ def main():
     if different:
         return 1
     if missing and options.require:
-        print("every lane is required; `tests/lanes.py --provision` installs what is missing")
+        print("every lane is required; `tests/reproduce.py --provision` installs what is missing")
         return 2
     print("all lanes that were run are equal" if missing else "all lanes are equal")
     return 0
