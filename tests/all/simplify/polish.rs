@@ -26,7 +26,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     simplify::image::{error, meshes, reference, view_sets},
-    support::{StopsAfter, meshes, same_on_all_threads},
+    support::{StopsAfter, faults, meshes, same_on_all_threads},
 };
 
 const THREE: Polish = Polish {
@@ -536,29 +536,6 @@ fn half_of_mixed_views_are_flat() {
     assert_eq!(of(DrivingShading::Mixed), [21, 42]);
 }
 
-/// Faces away from whose centroid the original looks the other way, as far as 1 % of its diagonal or its nearest point.
-fn turned_over(original: &Mesh, mesh: &Mesh) -> usize {
-    let faces = |mesh: &Mesh| -> Vec<[DVec3; 3]> {
-        let triangles = mesh.triangles().iter();
-        triangles
-            .map(|t| t.map(|v| mesh.positions()[v as usize]))
-            .collect()
-    };
-    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-    let (low, high) = original.bounds().expect("triangles");
-    let original = faces(original);
-    let is_turned = |&&face: &&[DVec3; 3]| {
-        let centroid = (face[0] + face[1] + face[2]) / 3.0;
-        let squared = |f: &[DVec3; 3]| closest_point(centroid, *f).1;
-        let nearest = original.iter().map(squared).fold(f64::INFINITY, f64::min);
-        let reach = (math::sqrt(nearest) * 1.000_001).max(0.01 * (high - low).length());
-        let near = original.iter().filter(|f| squared(f) <= reach * reach);
-        near.map(|f| normal(*f).dot(normal(face)))
-            .all(|dot| dot <= 0.0)
-    };
-    faces(mesh).iter().filter(is_turned).count()
-}
-
 #[test]
 fn polishing_turns_no_face_over_though_pictures_would_gain_by_it() {
     let mut moved = 0;
@@ -572,7 +549,7 @@ fn polishing_turns_no_face_over_though_pictures_would_gain_by_it() {
             };
             own.polish.sweeps = 0;
             let plain = simplify(&mesh, &options, &Silent).expect("simplified");
-            let [before, after] = [plain, polished.clone()].map(|o| turned_over(&mesh, &o.mesh));
+            let [before, after] = [plain, polished.clone()].map(|o| faults(&mesh, &o.mesh)[1]);
             assert!(
                 after <= before,
                 "{name} to {triangles}: {before}, then {after}"

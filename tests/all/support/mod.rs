@@ -1,6 +1,7 @@
 //! What tests of several rooms use: meshes, random numbers, the command, models, oracles, property-test settings.
 
 mod command;
+mod folds;
 mod geometry;
 pub(crate) mod meshes;
 mod models;
@@ -11,6 +12,7 @@ mod random;
 mod threads;
 
 pub(crate) use command::{code, command, expect, folder, json, lodmark, put, stderr, stdout};
+pub(crate) use folds::faults;
 pub(crate) use geometry::{
     at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
 };
