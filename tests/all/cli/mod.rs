@@ -5,4 +5,5 @@ mod compare;
 mod exit_codes;
 mod levels;
 mod odd_files;
+mod replay;
 mod visibility;

@@ -8,6 +8,7 @@ pub(crate) mod image;
 mod interior_views;
 pub(crate) mod memoryless;
 pub(crate) mod polish;
+mod progress;
 mod quadric;
 mod tolerance;
 mod view_bounded;

@@ -7,9 +7,7 @@ use lodmark::{
         Changes, Freedom, History, LiveMesh, Observer, Patch, Refusal, Replay, Rules, Star,
         check_folds, flip,
     },
-    geometry::closest_point,
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
-    num::math,
     raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{
         Amount, MethodOptions, Options, Outcome,

@@ -18,7 +18,7 @@ pub(crate) use geometry::{
 };
 pub(crate) use models::{model, read_model};
 pub(crate) use oracle::say;
-pub(crate) use progress::{Impatient, StopsAfter};
+pub(crate) use progress::{Impatient, Recorder, StopsAfter};
 pub(crate) use property::{bound_cases, bound_count, bound_seed, bounded, cases};
 pub(crate) use random::Random;
 pub(crate) use threads::{on_threads, same_on_all_threads};
