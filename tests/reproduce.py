@@ -2,7 +2,8 @@
 """The same bits everywhere: builds lodmark in several ways and holds every build against the goldens.
 
 A lane is a build (debug, release, compiled for this very CPU, for x86-64-v2, for aarch64) with a number of threads. In
-every lane `lodmark selfcheck` recomputes the whole golden set. The aarch64 lane runs aarch64 code under qemu on x86-64:
+every lane `lodmark selfcheck` recomputes the whole golden set. Two builds, and two lanes, run at a time: much of either
+keeps one core busy. The aarch64 lane runs aarch64 code under qemu on x86-64:
 that tests code generation, SIMD widths and libm, not another floating-point unit.
 
     tests/reproduce.py                      run the lanes that this machine can; name the others
@@ -21,6 +22,7 @@ import shutil
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ARM = "aarch64-unknown-linux-gnu"
@@ -33,7 +35,7 @@ PACKAGES = [
     "qemu-user-static",
 ]
 # Seconds. Under qemu a program can hang for ever (a wrong C library does that): every command has a limit.
-BUILD_LIMIT, RUN_LIMIT, EMULATED_LIMIT, APT_LIMIT = 1500, 300, 600, 900
+BUILD_LIMIT, RUN_LIMIT, EMULATED_LIMIT, APT_LIMIT = 2400, 600, 1200, 900
 
 
 def no_arm():
@@ -76,11 +78,10 @@ class Build:
             self.environment["CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER"] = "aarch64-linux-gnu-gcc"
         self.outcome = None
 
-    def run(self):
-        """Builds once; returns (error or None, seconds)."""
+    def begin(self, pool):
+        """Begins to build, once; `outcome.result()` is (error or None, seconds)."""
         if self.outcome is None:
-            self.outcome = call(self.command, BUILD_LIMIT, self.environment)[:2]
-        return self.outcome
+            self.outcome = pool.submit(lambda: call(self.command, BUILD_LIMIT, self.environment)[:2])
 
     def program(self):
         # No -L for qemu: with the cross C library the first thread hangs for ever.
@@ -156,6 +157,19 @@ def provision():
         print(f"  {seconds:.0f} s", flush=True)
 
 
+def run(name, build, arguments):
+    """Runs a lane: (what is wrong or None, the first line that it said, seconds)."""
+    wrong, _ = build.outcome.result()
+    if wrong:
+        return wrong, "", 0.0
+    limit = EMULATED_LIMIT if build.arm else RUN_LIMIT
+    wrong, seconds, said = call([*build.program(), *arguments], limit)
+    first = said.splitlines()[0] if said else ""
+    if not wrong and "selfcheck" in arguments and build.sign not in first:
+        wrong = f"it should say `{build.sign}`, but says `{first}`"
+    return wrong, first, seconds
+
+
 def main():
     about = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     about.add_argument("--provision", action="store_true", help="install system packages where they are missing")
@@ -167,29 +181,25 @@ def main():
         about.error(f"no lane begins with {', '.join(options.lane)}")
     if options.provision and any(build.arm for _, build, _ in chosen):
         provision()
-    rows, different, missing = [], [], []
-    for name, build, arguments in chosen:
-        shown = "lodmark " + " ".join(arguments)
-        why = build.missing()
-        if why:
-            missing.append(f"{name}: {why}")
-            rows.append((name, shown, "MISSING", "", ""))
-            continue
-        built = build.outcome is not None
-        print(f"{name} ...", flush=True)
-        wrong, build_seconds = build.run()
-        seconds, said = 0.0, ""
-        if not wrong:
-            limit = EMULATED_LIMIT if build.arm else RUN_LIMIT
-            wrong, seconds, said = call([*build.program(), *arguments], limit)
-        first = said.splitlines()[0] if said else ""
-        if not wrong and "selfcheck" in arguments and build.sign not in first:
-            wrong = f"it should say `{build.sign}`, but says `{first}`"
-        print(f"  {wrong or first}", flush=True)
-        if wrong:
-            different.append(f"{name}: {wrong}")
-        row = "DIFFERS" if wrong else "equal"
-        rows.append((name, shown, row, "" if built else f"{build_seconds:.0f}", f"{seconds:.1f}"))
+    rows, different, missing, shown = [], [], [], set()
+    with ThreadPoolExecutor(2) as builds, ThreadPoolExecutor(2) as runs:
+        for _, build, _ in chosen:
+            if not build.missing():
+                build.begin(builds)
+        begun = [(lane, runs.submit(run, *lane) if lane[1].outcome else None) for lane in chosen]
+        for (name, build, arguments), outcome in begun:
+            command = "lodmark " + " ".join(arguments)
+            if not outcome:
+                missing.append(f"{name}: {build.missing()}")
+                rows.append((name, command, "MISSING", "", ""))
+                continue
+            wrong, first, seconds = outcome.result()
+            print(f"{name} ...\n  {wrong or first}", flush=True)
+            if wrong:
+                different.append(f"{name}: {wrong}")
+            built = "" if build in shown else f"{build.outcome.result()[1]:.0f}"
+            shown.add(build)
+            rows.append((name, command, "DIFFERS" if wrong else "equal", built, f"{seconds:.1f}"))
     head = ("lane", "command", "result", "build s", "run s")
     widths = [max(len(row[i]) for row in [head, *rows]) for i in range(5)]
     print()

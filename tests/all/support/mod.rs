@@ -9,6 +9,7 @@ pub(crate) mod oracle;
 mod progress;
 mod property;
 mod random;
+mod sources;
 mod threads;
 
 pub(crate) use command::{code, command, expect, folder, json, lodmark, put, stderr, stdout};
