@@ -144,7 +144,8 @@ mod visibility;
 
 pub use error::{Error, Result};
 pub use front::{
-    options, render, render_with, reports, verify, views, visibility, visibility_with,
+    compare, compare_with, options, render, render_with, reports, verify, views, visibility,
+    visibility_with,
 };
 pub use mesh::{Attributes, Channel, ChannelKind, Materials, Mesh, MeshParts};
 pub use num::Precision;

@@ -3,23 +3,40 @@
 //! They compose rooms as the command does and promise what their signatures say; the rooms behind them are free to
 //! change.
 
+mod compare;
 mod render;
 pub mod verify;
 mod visibility;
 
+pub use compare::{compare, compare_with};
 pub use render::{render, render_with};
 pub use visibility::{visibility, visibility_with};
 
 /// Options of everything, each made by a constructor or by default and changed step by step.
 pub mod options {
     pub use super::render::RenderOptions;
+    pub use crate::metric::report::CompareOptions;
     pub use crate::visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule};
 }
 
 /// Findings: images, measures, and the account that runs give of themselves.
 pub mod reports {
     pub use super::render::{Rendering, ViewImages};
-    pub use crate::{num::Grid, visibility::Visibility};
+    pub use crate::{
+        metric::{
+            appearance::WorstView,
+            folds::Folds,
+            luma::SquaredError,
+            report::{
+                CandidateReport, Comparison, DistanceReport, ErrorReport, ImageError, MeshShape,
+                PictureReport, ViewReport,
+            },
+            silhouette::SilhouetteHistogram,
+            surface::{Distances, OneSided, SurfaceDistance},
+        },
+        num::Grid,
+        visibility::Visibility,
+    };
 }
 
 /// Cameras and what they draw, sets of views, and the cells of viewers that guarantees are given for.
