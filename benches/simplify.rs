@@ -11,10 +11,10 @@ use std::{hint::black_box, path::PathBuf};
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use lodmark::{
-    Silent, io,
+    io,
     mesh::{Mesh, canonical, generate, weld},
     simplify::{
-        Amount, MethodOptions, Options,
+        Options, Target,
         image::{DrivingShading, ImageOptions, Preset},
         simplify,
     },
@@ -30,7 +30,7 @@ fn methods(c: &mut Criterion) {
     let mut group = c.benchmark_group("simplify");
     group.sample_size(10);
     for (name, mesh) in &meshes {
-        let target = Amount::Triangles(1_333);
+        let target = Target::Triangles(1_333);
         for options in [
             Options::image(target),
             Options::memoryless(target),
@@ -39,7 +39,7 @@ fn methods(c: &mut Criterion) {
             group.bench_function(
                 format!("{name} to 1,333 by {}", options.method.name()),
                 |b| {
-                    b.iter(|| black_box(simplify(mesh, &options, &Silent).expect("simplified")));
+                    b.iter(|| black_box(simplify(mesh, &options).expect("simplified")));
                 },
             );
         }
@@ -52,7 +52,7 @@ struct Row {
     name: &'static str,
     model: &'static str,
     triangles: u64,
-    options: fn(Amount) -> Options,
+    options: fn(Target) -> Options,
 }
 
 const ROWS: &[Row] = &[
@@ -112,16 +112,12 @@ const ROWS: &[Row] = &[
     },
 ];
 
-fn recipe(target: Amount, preset: Preset, shading: DrivingShading) -> Options {
+fn recipe(target: Target, preset: Preset, shading: DrivingShading) -> Options {
     let own = ImageOptions {
         shading,
         ..preset.options()
     };
-    Options {
-        schedule: preset.schedule(),
-        method: MethodOptions::Image(own),
-        ..Options::image(target)
-    }
+    Options::new(own, target)
 }
 
 fn models() -> PathBuf {
@@ -142,9 +138,9 @@ fn rows(c: &mut Criterion) {
             }
         };
         for row in ROWS.iter().filter(|row| row.model == model) {
-            let options = (row.options)(Amount::Triangles(row.triangles));
+            let options = (row.options)(Target::Triangles(row.triangles));
             group.bench_function(row.name, |b| {
-                b.iter(|| black_box(simplify(&mesh, &options, &Silent).expect("simplified")));
+                b.iter(|| black_box(simplify(&mesh, &options).expect("simplified")));
             });
         }
     }
@@ -174,11 +170,11 @@ fn scale(c: &mut Criterion) {
         let mesh = canonical(&generate::grid(side, side, generate::Height::Waves)).mesh;
         let triangles = mesh.triangles().len() as u64;
         group.throughput(Throughput::Elements(triangles / 2));
-        let options = Options::memoryless(Amount::Triangles(triangles / 100));
+        let options = Options::memoryless(Target::Triangles(triangles / 100));
         group.bench_function(
             format!("collapses of {triangles} triangles to a hundredth"),
             |b| {
-                b.iter(|| black_box(simplify(&mesh, &options, &Silent).expect("simplified")));
+                b.iter(|| black_box(simplify(&mesh, &options).expect("simplified")));
             },
         );
     }

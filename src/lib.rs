@@ -9,8 +9,8 @@
 //! use lodmark::{Silent, mesh, simplify};
 //!
 //! let mesh = mesh::canonical(&mesh::generate::icosphere(3)).mesh;
-//! let options = simplify::Options::image(simplify::Amount::Triangles(200));
-//! let outcome = simplify::simplify(&mesh, &options, &Silent)?;
+//! let options = simplify::Options::image(simplify::Target::Triangles(200));
+//! let outcome = simplify::simplify(&mesh, &options)?;
 //! assert_eq!(outcome.mesh.triangles().len(), 200);
 //! # Ok::<(), lodmark::Error>(())
 //! ```

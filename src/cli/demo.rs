@@ -15,7 +15,7 @@ use crate::{
         report::{CompareOptions, Judge},
     },
     raster::{Grid, Scene},
-    simplify::{Amount, MethodOptions, Options as RunOptions, image::Preset, simplify},
+    simplify::{Options as RunOptions, Target, image::Preset, simplify_with},
     view::Interpolation,
 };
 
@@ -129,7 +129,7 @@ fn scene(
     let mesh = canonical(&mesh).mesh;
     let judge = Judge::new(&mesh, &judged_by())?;
     io::write(&folder.join(format!("{name}.{extension}")), &mesh)?;
-    let amount = Amount::Ratio(share);
+    let amount = Target::Ratio(share);
     let methods = [
         by_images(amount),
         RunOptions::memoryless(amount),
@@ -137,7 +137,7 @@ fn scene(
     ];
     let mut results: Vec<(&'static str, Mesh)> = Vec::new();
     for options in methods {
-        let outcome = simplify(&mesh, &options, terminal)?;
+        let outcome = simplify_with(&mesh, &options, terminal)?;
         results.push((options.method.name(), outcome.mesh));
     }
     let meshes: Vec<&Mesh> = results.iter().map(|(_, mesh)| mesh).collect();
@@ -195,8 +195,6 @@ fn judged_by() -> CompareOptions {
 }
 
 /// The recipe for who is in a hurry, so that the demo ends within a minute.
-fn by_images(amount: Amount) -> RunOptions {
-    let mut options = RunOptions::image(amount);
-    options.method = MethodOptions::Image(Preset::Fast.options());
-    options
+fn by_images(amount: Target) -> RunOptions {
+    RunOptions::image(amount).preset(Preset::Fast)
 }

@@ -9,7 +9,7 @@ use crate::{
     },
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
     raster::{Scene, luma_sums, mean_luma},
-    simplify::{Amount, MethodOptions, Options, Outcome, image::ImageOptions},
+    simplify::Outcome,
     view::{Cull, Sphere, View, ViewSet, frame_of},
 };
 
@@ -61,15 +61,6 @@ pub(super) fn two_materials() -> Mesh {
     .expect("the mesh was valid before")
 }
 
-/// Options of the image method with the schedule of their preset.
-pub(super) fn image(own: &ImageOptions, target: Amount) -> Options {
-    Options {
-        method: MethodOptions::Image(own.clone()),
-        schedule: own.preset.schedule(),
-        ..Options::image(target)
-    }
-}
-
 /// The mesh, how many collapses led to it, and the bits of its error. Not how many evaluations: that is effort.
 pub(super) fn outcome_items(collector: &mut Collector, name: &str, outcome: &Outcome) {
     collector.mesh(name, &outcome.mesh);
@@ -77,7 +68,7 @@ pub(super) fn outcome_items(collector: &mut Collector, name: &str, outcome: &Out
     for phase in &outcome.phases {
         text += &format!(" {}-{}", phase.method, phase.counters.collapses);
     }
-    if let Some(rms) = outcome.error_rms {
+    if let Some(rms) = outcome.error_rms() {
         text += &format!(" {}", bits([rms]));
     }
     collector.text(&format!("{name}/run"), text);

@@ -5,10 +5,10 @@ use super::{
     fixtures::{bits, outcome_items, side_by_side},
 };
 use crate::{
-    Result, Silent,
+    Result,
     mesh::{canonical, generate},
     simplify::{
-        Amount, MethodOptions, Options, Replay,
+        Options, Replay, Schedule, Target,
         image::{ImageOptions, Preset, Size, Start},
         quadric::QuadricOptions,
         simplify,
@@ -20,8 +20,7 @@ use crate::{
 
 /// Few cameras and small pictures: fast, and everything the method does is in it.
 fn guided(quadric: QuadricOptions, triangles: u64) -> Options {
-    let mut options = Options::visibility(Amount::Triangles(triangles));
-    options.method = MethodOptions::Visibility(VisibilityOptions {
+    let own = VisibilityOptions {
         quadric,
         measure: visibility::MeasureOptions {
             octahedron: 1,
@@ -29,8 +28,8 @@ fn guided(quadric: QuadricOptions, triangles: u64) -> Options {
             ..visibility::MeasureOptions::default()
         },
         ..VisibilityOptions::default()
-    });
-    options
+    };
+    Options::new(own, Target::triangles(triangles))
 }
 
 /// The guided method on closed, open and hidden meshes, and levels of its history.
@@ -47,9 +46,9 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
         ("probe", generate::probe(), 150),
     ] {
         let options = guided(QuadricOptions::default(), triangles);
-        let outcome = simplify(&mesh, &options, &Silent)?;
+        let outcome = simplify(&mesh, &options)?;
         outcome_items(collector, &format!("{name}/visibility"), &outcome);
-        let v = outcome.v_mesh.unwrap_or(f64::NAN);
+        let v = outcome.v_mesh().unwrap_or(f64::NAN);
         collector.text(&format!("{name}/v-mesh-bits"), bits([v]));
         let mut replay = Replay::new(&mesh, &outcome.history)?;
         replay.seek(mesh.triangles().len() * 2 / 3)?;
@@ -57,7 +56,7 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
         collector.mesh(&format!("{name}/replay"), &level);
     }
     let options = guided(QuadricOptions::probabilistic(), 200);
-    let outcome = simplify(&generate::encased(1), &options, &Silent)?;
+    let outcome = simplify(&generate::encased(1), &options)?;
     outcome_items(collector, "encased/visibility-probabilistic", &outcome);
     interiors(collector)
 }
@@ -74,11 +73,9 @@ fn interiors(collector: &mut Collector) -> Result<()> {
             interior_views,
             ..Preset::Paper.options()
         };
-        let options = Options {
-            method: MethodOptions::Image(own),
-            ..Options::image(Amount::Triangles(640))
-        };
-        let outcome = simplify(&mesh, &options, &Silent)?;
+        // Recorded with another schedule than the preset's.
+        let options = Options::new(own, Target::triangles(640)).schedule(Schedule::Semi);
+        let outcome = simplify(&mesh, &options)?;
         let name = format!("interior-views/{interior_views:02}");
         outcome_items(collector, &name, &outcome);
         meshes.push(outcome.mesh);

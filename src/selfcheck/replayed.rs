@@ -1,14 +1,11 @@
 //! Cases of replay: levels of recorded runs.
 
-use super::{
-    Collector,
-    fixtures::{image, terrain},
-};
+use super::{Collector, fixtures::terrain};
 use crate::{
-    Result, Silent,
+    Result,
     mesh::generate,
     simplify::{
-        Amount, Options, Replay,
+        Options, Replay, Target,
         image::{ImageOptions, Start},
         simplify,
     },
@@ -28,15 +25,15 @@ pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
         (
             "terrain/image",
             terrain(),
-            image(&own, Amount::Triangles(150)),
+            Options::new(own, Target::Triangles(150)),
         ),
         (
             "textured-torus/memoryless",
             textured,
-            Options::memoryless(Amount::Triangles(60)),
+            Options::memoryless(Target::Triangles(60)),
         ),
     ] {
-        let outcome = simplify(&mesh, &options, &Silent)?;
+        let outcome = simplify(&mesh, &options)?;
         let mut replay = Replay::new(&mesh, &outcome.history)?;
         for (step, triangles) in [
             ("coarser", 180),

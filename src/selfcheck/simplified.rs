@@ -4,16 +4,15 @@ use glam::DVec3;
 
 use super::{
     Collector,
-    fixtures::{colored, image, outcome_items, side_by_side, terrain, two_materials},
+    fixtures::{colored, outcome_items, side_by_side, terrain, two_materials},
 };
 use crate::{
-    Error, Result, Silent,
+    Error, Result,
     bound::{tolerance::Source, view_cell::ViewCell},
     mesh::{canonical, generate},
     simplify::{
-        Amount, MethodOptions, Options,
+        Options, Target,
         image::{DrivingShading, ImageOptions, Polish, Preset, Start},
-        quadric::QuadricOptions,
         simplify,
         tolerance::{Distance, ToleranceOptions},
         view_bounded::ViewBoundedOptions,
@@ -47,15 +46,16 @@ fn geometric(collector: &mut Collector) -> Result<()> {
         ("probe", generate::probe(), 150),
     ];
     for (name, mesh, triangles) in &cases {
-        let target = Amount::Triangles(*triangles);
-        let mut probabilistic = Options::quadric(target);
-        probabilistic.method = MethodOptions::Quadric(QuadricOptions::probabilistic());
+        let target = Target::Triangles(*triangles);
         for (method, options) in [
             ("memoryless", Options::memoryless(target)),
             ("quadric", Options::quadric(target)),
-            ("quadric-probabilistic", probabilistic),
+            (
+                "quadric-probabilistic",
+                Options::quadric(target).probabilistic(),
+            ),
         ] {
-            let outcome = simplify(mesh, &options, &Silent)?;
+            let outcome = simplify(mesh, &options)?;
             outcome_items(collector, &format!("{name}/{method}"), &outcome);
         }
     }
@@ -175,12 +175,14 @@ fn by_images(collector: &mut Collector) -> Result<()> {
         ),
         ("terrain/image-polished-mixed", terrain(), 120, &mixed),
     ] {
-        let outcome = simplify(&mesh, &image(own, Amount::Triangles(triangles)), &Silent)?;
+        let outcome = simplify(
+            &mesh,
+            &Options::new(own.clone(), Target::Triangles(triangles)),
+        )?;
         outcome_items(collector, name, &outcome);
     }
-    let mut limited = image(&small, Amount::ErrorOnly);
-    limited.error_rms = Some(4.0);
-    let outcome = simplify(&torus(), &limited, &Silent)?;
+    let limited = Options::new(small, Target::ErrorOnly).error_rms(4.0);
+    let outcome = simplify(&torus(), &limited)?;
     outcome_items(collector, "torus/image-error-rms", &outcome);
     Ok(())
 }
@@ -213,8 +215,8 @@ fn within_distance(collector: &mut Collector) -> Result<()> {
             within,
         ),
     ] {
-        let options = Options::tolerance(own, Amount::ErrorOnly);
-        let outcome = simplify(mesh, &options, &Silent)?;
+        let options = Options::tolerance(own, Target::ErrorOnly);
+        let outcome = simplify(mesh, &options)?;
         outcome_items(collector, name, &outcome);
     }
     Ok(())
@@ -226,11 +228,11 @@ fn bounded(collector: &mut Collector) -> Result<()> {
     let cell = ViewCell::polygon(&[at(-1.0, -0.5), at(1.0, -0.5), at(0.5, 1.0)])?;
     let mesh = canonical(&generate::torus(1.0, 0.4, 24, 12)).mesh;
     let own = ViewBoundedOptions::new(cell, 0.5);
-    let options = Options::view_bounded(own, Amount::ErrorOnly);
-    let outcome = simplify(&mesh, &options, &Silent)?;
+    let options = Options::view_bounded(own, Target::ErrorOnly);
+    let outcome = simplify(&mesh, &options)?;
     outcome_items(collector, "torus/view-bounded", &outcome);
     let mut bytes = Vec::new();
-    if let Some(map) = &outcome.correspondence {
+    if let Some(map) = outcome.correspondence() {
         map.write(&mesh, &outcome.mesh, &mut bytes)
             .map_err(|e| Error::Internal(e.to_string()))?;
     }
@@ -241,13 +243,13 @@ fn bounded(collector: &mut Collector) -> Result<()> {
 /// The picture of the README: a model, and what images and geometry leave of it.
 fn readme_picture(collector: &mut Collector) -> Result<()> {
     let mesh = canonical(&generate::interlocking_tori(32, 32)).mesh;
-    let target = Amount::Triangles(260);
+    let target = Target::Triangles(260);
     let driving = ImageOptions {
         size: 72.into(),
         ..ImageOptions::default()
     };
-    let by_images = simplify(&mesh, &image(&driving, target), &Silent)?.mesh;
-    let by_geometry = simplify(&mesh, &Options::memoryless(target), &Silent)?.mesh;
+    let by_images = simplify(&mesh, &Options::new(driving, target))?.mesh;
+    let by_geometry = simplify(&mesh, &Options::memoryless(target))?.mesh;
     let meshes = [mesh, by_images, by_geometry];
     side_by_side(
         collector,

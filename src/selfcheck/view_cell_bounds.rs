@@ -15,7 +15,7 @@ use crate::{
         view_cell::{ViewCell, file},
     },
     mesh::generate,
-    simplify::{Amount, NearestTriangle, Options, originals, simplify},
+    simplify::{NearestTriangle, Options, Target, originals, simplify},
 };
 
 fn at(x: f64, y: f64, z: f64) -> DVec3 {
@@ -58,8 +58,8 @@ pub(super) fn bounds(collector: &mut Collector) -> Result<()> {
             collector.bytes(&format!("{name}/{what}"), bits(numbers).as_bytes());
         }
     }
-    let (fine, amount) = (generate::torus(1.0, 0.4, 24, 16), Amount::Triangles(200));
-    let coarse = simplify(&fine, &Options::memoryless(amount), &Silent)?.mesh;
+    let (fine, amount) = (generate::torus(1.0, 0.4, 24, 16), Target::Triangles(200));
+    let coarse = simplify(&fine, &Options::memoryless(amount))?.mesh;
     let nearest = NearestTriangle::new(&coarse)
         .ok_or_else(|| Error::Internal("a torus has triangles".into()))?;
     for (name, cell) in cells()? {

@@ -1,27 +1,32 @@
-//! The methods of simplification, their options and their outcome.
+//! Methods of simplification, one folder each, and the run that they share.
 //!
 //! [`simplify`] takes a mesh and [`Options`] and gives an [`Outcome`]: the mesh, the history of its making and why it
-//! ended; [`simplify_guided`] does so by a visibility that was measured before. [`memoryless`] and [`quadric`] are the baselines; the placements in them are pure functions that other
-//! methods use as well: [`mod@image`] the first, [`visibility`] the second.
+//! ended. A method's folder has its `options`, its `run`, its `report` where it tells more than a mesh, and the parts
+//! of the method itself; `methods` lists them. [`memoryless`] and [`quadric`] are the baselines; other methods place
+//! vertices by them: [`mod@image`], [`tolerance`] and [`view_bounded`] by the first, [`visibility`] by the second.
 
 pub mod billboards;
 pub mod image;
 pub mod memoryless;
+mod methods;
 mod options;
 mod outcome;
 pub mod quadric;
 mod repair_folds;
 mod replacement;
 mod run;
+mod target;
 pub mod tolerance;
 pub mod view_bounded;
 pub mod visibility;
 
-pub use crate::collapse::Stop;
-/// What an [`Outcome`] carries to rebuild any level, and what rebuilds it.
-pub use crate::collapse::{History, Replay};
-pub use image::Comparison;
-pub use options::{Amount, MethodOptions, Options};
+/// The history that an [`Outcome`] carries to rebuild any level, the type that rebuilds it, and the enums of
+/// [`Options`].
+pub use crate::collapse::{History, Replay, Rules, Schedule, Stop, Topology};
+pub use methods::{MethodOptions, Report};
+pub use options::Options;
 pub use outcome::{Outcome, Phase};
 pub use replacement::{NearestTriangle, originals};
-pub use run::{simplify, simplify_guided};
+pub use run::{simplify, simplify_with};
+pub use target::Target;
+pub use visibility::simplify_guided;

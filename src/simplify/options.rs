@@ -1,254 +1,306 @@
-//! What to do, resolved: the same options and input give the same bytes.
+//! The options of a run, resolved: the same options and input give the same bytes.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    image::ImageOptions, memoryless::MemorylessOptions, quadric::QuadricOptions,
-    tolerance::ToleranceOptions, view_bounded::ViewBoundedOptions, visibility::VisibilityOptions,
+    MethodOptions, Target,
+    image::{DrivingShading, EngineName, ImageOptions, Preset, Size, Start},
+    memoryless::MemorylessOptions,
+    methods::ErrorLimit,
+    quadric::QuadricOptions,
+    tolerance::ToleranceOptions,
+    view_bounded::ViewBoundedOptions,
+    visibility::VisibilityOptions,
 };
 use crate::{
     Error, Result,
-    collapse::{Rules, Schedule},
+    collapse::{Rules, Schedule, Topology},
+    view::ViewsName,
 };
 
-/// How far to simplify.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Amount {
-    /// To at most this many triangles, at least 1.
-    Triangles(u64),
-    /// To at most this share of the input's triangles, in (0, 1].
-    Ratio(f64),
-    /// As far as the error limit of [`Options::error_rms`] lets it.
-    ErrorOnly,
-}
-
-impl Amount {
-    /// The number of triangles to reach from `input` triangles.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] for no triangles or a ratio outside (0, 1].
-    pub fn triangles(self, input: usize) -> Result<usize> {
-        match self {
-            Self::Triangles(0) => Err(Error::Usage(
-                "0 triangles make no mesh; expected at least 1".into(),
-            )),
-            Self::ErrorOnly => Ok(1),
-            Self::Triangles(n) => Ok(usize::try_from(n).unwrap_or(usize::MAX)),
-            Self::Ratio(r) if r > 0.0 && r <= 1.0 => {
-                // Rounded up, and never 0: a ratio of a small mesh leaves something.
-                Ok(((r * input as f64).ceil() as usize).max(1))
-            }
-            Self::Ratio(r) => Err(Error::Usage(format!(
-                "the ratio {r} is not in (0, 1]; expected for example 0.1"
-            ))),
-        }
-    }
-}
-
-/// Which method, with its options.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "name")]
-pub enum MethodOptions {
-    /// Lindstrom & Turk 2000.
-    Image(ImageOptions),
-    /// Lindstrom & Turk 1998/99.
-    Memoryless(MemorylessOptions),
-    /// Garland & Heckbert 1997/98.
-    Quadric(QuadricOptions),
-    /// Zhang & Turk 2002.
-    Visibility(VisibilityOptions),
-    /// Cox & Chibelushi 2005.
-    Tolerance(ToleranceOptions),
-    /// Within an angle for the viewers in a cell.
-    ViewBounded(ViewBoundedOptions),
-}
-
-impl MethodOptions {
-    /// The method's name on the command line and in reports.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Image(_) => "image",
-            Self::Memoryless(_) => "memoryless",
-            Self::Quadric(_) => "quadric",
-            Self::Visibility(_) => "visibility",
-            Self::Tolerance(_) => "tolerance",
-            Self::ViewBounded(_) => "view-bounded",
-        }
-    }
-
-    /// Whether it knows neither pictures nor a guarantee: it orders collapses, and vertices may be moved afterwards.
-    const fn only_orders(&self) -> bool {
-        matches!(
-            self,
-            Self::Memoryless(_) | Self::Quadric(_) | Self::Visibility(_)
-        )
-    }
-}
-
 /// Everything a result depends on besides the input.
+///
+/// Made by the constructor of a method, then changed step by step; the order of the steps does not matter. A step that
+/// means nothing to the method is an error of [`Options::check`], and so of the run.
+///
+/// ```
+/// # use lodmark::simplify::{image::Preset, Options, Target};
+/// let options = Options::image(Target::triangles(1_333)).preset(Preset::Fast);
+/// assert!(options.check().is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Options {
     /// The method.
     pub method: MethodOptions,
     /// When to stop.
-    pub target: Amount,
+    pub target: Target,
     /// Stop before the root mean square of the luma differences over the driving views exceeds this many levels;
     /// only for methods that look at images.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rms: Option<f64>,
-    /// What a collapse may do.
+    /// The rules that collapses obey.
     pub rules: Rules,
     /// When edges are evaluated again.
     pub schedule: Schedule,
-    /// Measure the true rank of every so many-th collapse among all legal ones; 0 is off. Changes no result.
+    /// Measure the true rank of every n-th collapse among all legal ones; 0 is off. Changes no result.
     #[serde(default)]
     pub measure_rank: u64,
     /// Move vertices after the last collapse where faces lie folded onto each other and those of the original do not;
     /// only for methods that neither look at images nor give a guarantee.
     #[serde(default)]
     pub unfold: bool,
+    /// The first step that meant nothing to the method.
+    #[serde(skip)]
+    pub(crate) foreign: Option<&'static str>,
 }
 
+/// # Constructors
 impl Options {
-    /// Image-driven simplification with the default preset, down to `target`.
+    /// A method with the rules and the schedule that go with its options, down to `target`.
     #[must_use]
-    pub fn image(target: Amount) -> Self {
-        let image = ImageOptions::default();
+    pub fn new(method: impl Into<MethodOptions>, target: Target) -> Self {
+        let method = method.into();
+        let own = method.as_run();
         Self {
-            schedule: image.preset.schedule(),
-            ..Self::new(MethodOptions::Image(image), target)
+            rules: own.rules(),
+            schedule: own.schedule(),
+            unfold: own.only_orders(),
+            method,
+            target,
+            error_rms: None,
+            measure_rank: 0,
+            foreign: None,
         }
     }
 
-    /// Memoryless simplification with its defaults, down to `target`.
-    ///
-    /// Of the queues (lazy, semi, eager) and normal margins (0 to 0.2) that were tried, an eager queue with 0.05 was the
-    /// one whose flat RMS and mean distance were within 1 % of CGAL's Lindstrom-Turk meshes at three levels of the
-    /// bunny and one of the dragon. A lazy queue is faster and up to 2 % worse.
+    /// Image-driven simplification with the default preset, down to `target`.
     #[must_use]
-    pub fn memoryless(target: Amount) -> Self {
-        let mut options = Self::new(
-            MethodOptions::Memoryless(MemorylessOptions::default()),
-            target,
-        );
-        options.schedule = Schedule::Eager;
-        options.rules.normal_cosine = 0.05;
-        options
+    pub fn image(target: Target) -> Self {
+        Self::new(ImageOptions::default(), target)
+    }
+
+    /// Memoryless simplification with its defaults, down to `target`.
+    #[must_use]
+    pub fn memoryless(target: Target) -> Self {
+        Self::new(MemorylessOptions::default(), target)
     }
 
     /// Quadric error metrics with their defaults, down to `target`.
     #[must_use]
-    pub fn quadric(target: Amount) -> Self {
-        Self::new(MethodOptions::Quadric(QuadricOptions::default()), target)
+    pub fn quadric(target: Target) -> Self {
+        Self::new(QuadricOptions::default(), target)
     }
 
     /// Visibility-guided simplification with its defaults, down to `target`.
     #[must_use]
-    pub fn visibility(target: Amount) -> Self {
-        Self::new(
-            MethodOptions::Visibility(VisibilityOptions::default()),
-            target,
-        )
+    pub fn visibility(target: Target) -> Self {
+        Self::new(VisibilityOptions::default(), target)
     }
 
-    /// Simplification within a distance: as far as it lets it, or down to `target`.
+    /// Simplification within a distance: as far as the distance allows, or down to `target`.
     #[must_use]
-    pub fn tolerance(own: ToleranceOptions, target: Amount) -> Self {
-        let mut options = Self::new(MethodOptions::Tolerance(own), target);
-        options.schedule = Schedule::Eager;
-        options.rules.normal_cosine = 0.05;
-        options
+    pub fn tolerance(own: ToleranceOptions, target: Target) -> Self {
+        Self::new(own, target)
     }
 
-    /// View-bounded simplification: as far as the angle lets it, or down to `target`.
+    /// View-bounded simplification: as far as the angle allows, or down to `target`.
     #[must_use]
-    pub fn view_bounded(own: ViewBoundedOptions, target: Amount) -> Self {
-        let mut options = Self::new(MethodOptions::ViewBounded(own), target);
-        options.rules.normal_cosine = 0.05;
-        options
+    pub fn view_bounded(own: ViewBoundedOptions, target: Target) -> Self {
+        Self::new(own, target)
+    }
+}
+
+/// # Steps for every method
+impl Options {
+    /// When to stop, instead of the constructor's target.
+    #[must_use]
+    pub fn target(mut self, target: Target) -> Self {
+        self.target = target;
+        self
     }
 
-    /// Images need a guard against folds in every step: Gouraud shading cannot see them. For the methods that only
-    /// measure distances it cost 3 to 4 % of flat RMS on the dragon at 8,191 triangles; they are unfolded at the end.
-    fn new(method: MethodOptions, target: Amount) -> Self {
-        let mut rules = Rules::default();
-        if !matches!(method, MethodOptions::Image(_)) {
-            rules.fold_cosine = -1.0;
-        }
-        Self {
-            unfold: method.only_orders(),
-            method,
-            target,
-            error_rms: None,
-            rules,
-            measure_rank: 0,
-            schedule: Schedule::Semi,
-        }
+    /// Whether holes may close and parts may merge; they may not by default.
+    #[must_use]
+    pub fn topology(mut self, topology: Topology) -> Self {
+        self.rules.topology = topology;
+        self
     }
 
-    /// Tests every option that has a range.
+    /// When edges are evaluated again; by default as the method or its preset has it.
+    #[must_use]
+    pub fn schedule(mut self, schedule: Schedule) -> Self {
+        self.schedule = schedule;
+        self
+    }
+
+    /// Measures the true rank of every n-th collapse among all legal ones: slow, changes no result. 0 is off.
+    #[must_use]
+    pub fn measure_rank(mut self, every: u64) -> Self {
+        self.measure_rank = every;
+        self
+    }
+
+    /// Stops before the root mean square of the luma differences over the driving views exceeds `levels`, 0 to 255;
+    /// only for the image-driven method.
+    #[must_use]
+    pub fn error_rms(mut self, levels: f64) -> Self {
+        self.error_rms = Some(levels);
+        self
+    }
+
+    /// Leaves folds and flipped faces as the collapses made them; only for methods that neither look at images nor
+    /// give a guarantee.
+    #[must_use]
+    pub fn keep_folds(mut self) -> Self {
+        if self.unfold {
+            self.unfold = false;
+        } else if !self.method.as_run().only_orders() {
+            self.refuse("keep_folds");
+        }
+        self
+    }
+
+    fn refuse(&mut self, step: &'static str) {
+        self.foreign.get_or_insert(step);
+    }
+}
+
+/// # Steps for the image-driven method
+impl Options {
+    /// A recipe: sets every option of the method that no other step has set, the schedule among them.
+    #[must_use]
+    pub fn preset(mut self, preset: Preset) -> Self {
+        if let MethodOptions::Image(own) = &mut self.method {
+            if self.schedule == own.preset.schedule() {
+                self.schedule = preset.schedule();
+            }
+            own.follow(preset, own.shading);
+        } else {
+            self.refuse("preset");
+        }
+        self
+    }
+
+    /// The shading of the driving pictures, with the weights that the preset has for it.
+    #[must_use]
+    pub fn shading(self, shading: DrivingShading) -> Self {
+        self.image_step("shading", |own| own.follow(own.preset, shading))
+    }
+
+    /// The driving views.
+    #[must_use]
+    pub fn views(self, views: ViewsName) -> Self {
+        self.image_step("views", |own| own.views = views)
+    }
+
+    /// Width and height of the driving pictures in pixels, 1 to 4096.
+    #[must_use]
+    pub fn size(self, pixels: u32) -> Self {
+        self.image_step("size", |own| own.size = Size::Pixels(pixels))
+    }
+
+    /// Samples in a pixel of the driving pictures along each axis: 1, 2 or 4.
+    #[must_use]
+    pub fn samples(self, samples: u32) -> Self {
+        self.image_step("samples", |own| own.samples = samples)
+    }
+
+    /// Driving views that look through the front into the interior.
+    #[must_use]
+    pub fn interior_views(self, count: usize) -> Self {
+        self.image_step("interior_views", |own| own.interior_views = count)
+    }
+
+    /// Where images take over from the memoryless method.
+    #[must_use]
+    pub fn start(self, start: Start) -> Self {
+        self.image_step("start", |own| own.start = start)
+    }
+
+    /// Sweeps that move vertices and flip edges after the last collapse; 0 is none.
+    #[must_use]
+    pub fn polish(self, sweeps: u32) -> Self {
+        self.image_step("polish", |own| own.polish.sweeps = sweeps)
+    }
+
+    /// How pictures follow the mesh; never changes a result.
+    #[must_use]
+    pub fn engine(self, engine: EngineName) -> Self {
+        self.image_step("engine", |own| own.engine = engine)
+    }
+
+    fn image_step(mut self, name: &'static str, step: impl FnOnce(&mut ImageOptions)) -> Self {
+        if let MethodOptions::Image(own) = &mut self.method {
+            step(own);
+        } else {
+            self.refuse(name);
+        }
+        self
+    }
+}
+
+/// # Steps for methods by quadrics
+impl Options {
+    /// Planes with uncertainty (Trettner & Kobbelt 2020); for the quadric and the visibility-guided method.
+    #[must_use]
+    pub fn probabilistic(mut self) -> Self {
+        match &mut self.method {
+            MethodOptions::Quadric(own) => *own = own.with_uncertainty(),
+            MethodOptions::Visibility(own) => own.quadric = own.quadric.with_uncertainty(),
+            _ => self.refuse("probabilistic"),
+        }
+        self
+    }
+}
+
+impl Options {
+    /// Tests every option that has a range, and that the method has a use for every step.
     ///
     /// # Errors
     /// [`Error::Usage`] that names the option, its value and the range.
     pub fn check(&self) -> Result<()> {
-        let within = |name: &str, value: f64, low: f64, high: f64| {
-            if value >= low && value <= high {
-                Ok(())
-            } else {
-                Err(Error::Usage(format!(
-                    "{name} is {value}; expected a number from {low} to {high}"
-                )))
-            }
-        };
-        let check_quadric = |q: &QuadricOptions| {
-            within("boundary-weight", q.boundary_weight, 0.0, 1e12)?;
-            match q.uncertainty {
-                Some(u) => {
-                    within("normal uncertainty", u.normal, 0.0, 1.0)?;
-                    within("position uncertainty", u.position, 0.0, 1e6)
-                }
-                None => Ok(()),
-            }
-        };
-        self.target.triangles(1)?;
-        if self.unfold && !self.method.only_orders() {
+        let (own, name) = (self.method.as_run(), self.method.name());
+        if let Some(step) = self.foreign {
             return Err(Error::Usage(format!(
-                "unfold means nothing to the method `{}`: it judges every change itself; leave it out",
-                self.method.name()
+                "{step} means nothing to the method `{name}`; leave it out or choose another method"
             )));
         }
-        within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
-        within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
-        match (self.error_rms, &self.method) {
-            (None, MethodOptions::Tolerance(_) | MethodOptions::ViewBounded(_)) => {}
-            (None, _) if self.target == Amount::ErrorOnly => {
+        self.target.of(1)?;
+        if self.unfold && !own.only_orders() {
+            return Err(Error::Usage(format!(
+                "unfold means nothing to the method `{name}`: it judges every change itself; leave it out"
+            )));
+        }
+        require_within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
+        require_within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;
+        match (self.error_rms, own.error()) {
+            (Some(rms), ErrorLimit::Pictures) => require_within("error-rms", rms, 0.0, 255.0)?,
+            (Some(_), _) => {
+                return Err(Error::Usage(format!(
+                    "the method `{name}` cannot honour --error-rms, which is measured on images; use the method `image`"
+                )));
+            }
+            (None, ErrorLimit::Own) => {}
+            (None, _) if self.target == Target::ErrorOnly => {
                 return Err(Error::Usage(
                     "no target; expected a number of triangles, a ratio or an error".into(),
                 ));
             }
-            (Some(rms), MethodOptions::Image(_)) => within("error-rms", rms, 0.0, 255.0)?,
-            (Some(_), other) => {
-                return Err(Error::Usage(format!(
-                    "the method `{}` cannot honour --error-rms, which is measured on images; use the method `image`",
-                    other.name()
-                )));
-            }
             (None, _) => {}
         }
-        match &self.method {
-            MethodOptions::Image(image) => image.check(),
-            MethodOptions::Memoryless(m) => within("volume-weight", m.volume_weight, 0.0, 1.0),
-            MethodOptions::Quadric(q) => check_quadric(q),
-            MethodOptions::ViewBounded(v) => v.check(),
-            MethodOptions::Visibility(v) => {
-                within("tie-weight", v.tie_weight, 0.0, 1.0)?;
-                v.measure.check()?;
-                check_quadric(&v.quadric)
-            }
-            MethodOptions::Tolerance(t) => t.check(),
-        }
+        own.check()
+    }
+}
+
+/// Refuses an option outside its range.
+pub(super) fn require_within(name: &str, value: f64, low: f64, high: f64) -> Result<()> {
+    if value >= low && value <= high {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
+            "{name} is {value}; expected a number from {low} to {high}"
+        )))
     }
 }

@@ -169,7 +169,7 @@ fn sharp_edges(live: &LiveMesh, vertices: Option<&[Vec<u32>]>) -> Vec<u32> {
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`].
-pub(super) fn unfold(
+pub(super) fn repair_folds(
     live: &mut LiveMesh,
     original: &Mesh,
     rules: Rules,

@@ -26,9 +26,9 @@ use crate::{
         surface::DEFAULT_SAMPLES,
     },
     simplify::{
-        Amount, MethodOptions, Options as RunOptions, Outcome,
+        MethodOptions, Options as RunOptions, Outcome, Target,
         image::{ImageOptions, Start},
-        simplify, simplify_guided,
+        simplify_guided, simplify_with,
         visibility::VisibilityOptions,
     },
     visibility::Visibility,
@@ -167,7 +167,7 @@ impl LevelsArgs {
             [only] => (*only, *only),
             [] => return Err(Error::Internal("no levels".into())),
         };
-        let amount = Amount::Triangles(coarsest as u64);
+        let amount = Target::Triangles(coarsest as u64);
         let mut options = match method {
             Method::Image => RunOptions::image(amount),
             Method::Memoryless => RunOptions::memoryless(amount),
@@ -180,7 +180,7 @@ impl LevelsArgs {
         }
         match &mut options.method {
             MethodOptions::Image(own) => {
-                let start = Start::Auto.triangles(finest);
+                let start = Start::Auto.triangles(Some(finest));
                 *own = ImageOptions {
                     start: Start::Triangles(start as u64),
                     ..own.clone()
@@ -195,12 +195,9 @@ impl LevelsArgs {
                     return simplify_guided(mesh, &options, visibility, terminal);
                 }
             }
-            MethodOptions::Memoryless(_)
-            | MethodOptions::Quadric(_)
-            | MethodOptions::Tolerance(_)
-            | MethodOptions::ViewBounded(_) => {}
+            _ => {}
         }
-        simplify(mesh, &options, terminal)
+        simplify_with(mesh, &options, terminal)
     }
 }
 
@@ -222,7 +219,7 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
     )?;
     let targets = percents
         .iter()
-        .map(|p| Amount::Ratio(p / 100.0).triangles(count))
+        .filter_map(|p| Target::ratio(p / 100.0).of(count).transpose())
         .collect::<Result<Vec<_>>>()?;
     let judge = Judge::new(&mesh, &options.judged_by())?;
     let (mut runs, mut reached) = (Vec::new(), Vec::new());
@@ -234,7 +231,7 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
             io::write(&folder.join(name), &level.mesh)?;
         }
         reached.extend(levels);
-        runs.push(serde_json::json!({ "options": outcome.options, "v_mesh": outcome.v_mesh }));
+        runs.push(serde_json::json!({ "options": outcome.options, "v_mesh": outcome.v_mesh() }));
     }
     let levels = judge::judged(&judge, &reached, terminal)?;
     let text = judge::csv(&levels);

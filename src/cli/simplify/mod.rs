@@ -17,13 +17,14 @@ use crate::{
     io,
     mesh::{self, content_sha256},
     simplify::{
-        Amount, Comparison, MethodOptions, Options as RunOptions, Stop,
+        MethodOptions, Options as RunOptions, Stop, Target,
         image::{
-            DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset, Size, Start,
+            Comparison, DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset,
+            Size, Start,
         },
         memoryless::MemorylessOptions,
         quadric::QuadricOptions,
-        simplify, simplify_guided,
+        simplify_guided, simplify_with,
         tolerance::Guarantee,
         visibility::VisibilityOptions,
     },
@@ -211,7 +212,7 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     guarantee: Option<Guarantee>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    polish: &'a Option<PolishCounters>,
+    polish: Option<&'a PolishCounters>,
     /// Of images and geometry, where they were close.
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
@@ -222,14 +223,14 @@ impl SimplifyArgs {
     /// The options of the library; refuses what the method cannot honour.
     fn resolve(&self) -> Result<RunOptions> {
         let target = match (self.triangles, self.ratio) {
-            (Some(n), _) => Amount::Triangles(n),
-            (None, Some(r)) => Amount::Ratio(r),
+            (Some(n), _) => Target::Triangles(n),
+            (None, Some(r)) => Target::Ratio(r),
             (None, None)
                 if self.error_rms.is_some()
                     || self.view_bound.has_error()
                     || self.within.has_error() =>
             {
-                Amount::ErrorOnly
+                Target::ErrorOnly
             }
             (None, None) => {
                 return Err(Error::Usage(
@@ -257,24 +258,15 @@ impl SimplifyArgs {
             Method::Tolerance => MethodOptions::Tolerance(self.within.options()?),
         };
         self.refuse_foreign(&method)?;
-        let mut options = match method {
-            MethodOptions::Image(_) => RunOptions::image(target),
-            MethodOptions::Memoryless(_) => RunOptions::memoryless(target),
-            MethodOptions::Quadric(_) => RunOptions::quadric(target),
-            MethodOptions::Visibility(_) => RunOptions::visibility(target),
-            MethodOptions::Tolerance(own) => RunOptions::tolerance(own, target),
-            MethodOptions::ViewBounded(ref own) => RunOptions::view_bounded(own.clone(), target),
-        };
-        options.method = method;
+        let mut options = RunOptions::new(method, target);
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
         options.unfold &= !self.keep_folds;
-        options.schedule = match (self.evaluation, self.method) {
-            (Some(Evaluation::Lazy), _) => Schedule::Lazy,
-            (Some(Evaluation::Semi), _) => Schedule::Semi,
-            (Some(Evaluation::Eager), _) => Schedule::Eager,
-            (None, Method::Image) => preset.schedule(),
-            (None, _) => options.schedule,
+        options.schedule = match self.evaluation {
+            Some(Evaluation::Lazy) => Schedule::Lazy,
+            Some(Evaluation::Semi) => Schedule::Semi,
+            Some(Evaluation::Eager) => Schedule::Eager,
+            None => options.schedule,
         };
         options.rules.topology = match self.topology {
             TopologyName::Preserve => Topology::Preserve,
@@ -403,13 +395,13 @@ pub(super) fn run(options: &SimplifyArgs, common: &Common, terminal: &Terminal) 
     }
     let outcome = match options.guidance.read(&canonical.mesh)? {
         Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
-        None => simplify(&canonical.mesh, &resolved, terminal)?,
+        None => simplify_with(&canonical.mesh, &resolved, terminal)?,
     };
     run_log::tell(&options.input, triangles_in, &outcome, terminal);
     let bounded = matches!(
         outcome.options.method,
         MethodOptions::ViewBounded(_) | MethodOptions::Tolerance(_)
-    ) && outcome.options.target == Amount::ErrorOnly;
+    ) && outcome.options.target == Target::ErrorOnly;
     let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
     if options.strict && short && !bounded {
         return Err(Error::TargetNotReached(format!(
@@ -433,12 +425,12 @@ pub(super) fn run(options: &SimplifyArgs, common: &Common, terminal: &Terminal) 
         vertices_out: outcome.mesh.positions().len(),
         method: outcome.options.method.name(),
         stop: &outcome.stop,
-        error_rms: outcome.error_rms,
-        v_mesh: outcome.v_mesh,
-        guarantee: outcome.guarantee,
+        error_rms: outcome.error_rms(),
+        v_mesh: outcome.v_mesh(),
+        guarantee: outcome.guarantee(),
         phases: &outcome.phases,
-        polish: &outcome.polish,
-        comparison: outcome.comparison,
+        polish: outcome.polish(),
+        comparison: outcome.comparison(),
         content_sha256: content_sha256(&outcome.mesh),
     };
     report(common, "simplify", &outcome.options, &summary)?;

@@ -30,10 +30,10 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             ));
         }
     }
-    if let Some(v) = outcome.v_mesh {
+    if let Some(v) = outcome.v_mesh() {
         terminal.say(&format!("visibility of the input: {v:.4}"));
     }
-    if let Some(polish) = &outcome.polish {
+    if let Some(polish) = outcome.polish() {
         terminal.say(&format!(
             "polish: {} moves, {} flips; {} evaluations",
             polish.moves, polish.flips, polish.evaluations
@@ -50,10 +50,10 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             ));
         }
     }
-    if let Some(rms) = outcome.error_rms {
+    if let Some(rms) = outcome.error_rms() {
         terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
     }
-    if let Some(c) = outcome.comparison {
+    if let Some(c) = outcome.comparison() {
         terminal.say(&format!(
             "RMS over views that drove nothing: {:.3} levels, by the memoryless method {:.3}{}",
             c.image,
@@ -65,7 +65,7 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             }
         ));
     }
-    if let Some(g) = outcome.guarantee {
+    if let Some(g) = outcome.guarantee() {
         terminal.say(&format!(
             "guaranteed: no point of the result is farther than {:.6e} from the input{}",
             g.distance,

@@ -114,7 +114,7 @@ impl ViewBoundArgs {
 
     /// Writes the correspondence where it is asked for.
     pub(super) fn write(&self, original: &Mesh, outcome: &Outcome) -> Result<()> {
-        let (Some(path), Some(map)) = (&self.bound_out, &outcome.correspondence) else {
+        let (Some(path), Some(map)) = (&self.bound_out, outcome.correspondence()) else {
             return Ok(());
         };
         atomic::write(path, |file: &mut dyn Write| {

@@ -27,6 +27,7 @@ use crate::{Error, Progress, Result, parallel};
 /// Reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "reason")]
+#[non_exhaustive]
 pub enum Stop {
     /// There are no more triangles than wanted.
     TargetReached,

@@ -43,7 +43,7 @@ impl HeldOut {
         own: &ImageOptions,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let side = own.size.pixels(1).saturating_mul(2);
+        let side = own.size.pixels(None).saturating_mul(2);
         let own = ImageOptions {
             views: ViewsName::Spiral(VIEWS),
             size: Size::Pixels(side.clamp(LEAST, 2 * Size::MOST)),

@@ -23,10 +23,10 @@ const PIXEL_LIMIT: u64 = 1 << 27;
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Ten times the target as in Table 1 of the paper for the bunny, but above 32,768 triangles no more than four
-    /// times, as there for the dragon; 65,536 where only an error limits the run (or the target is 1).
+    /// times, as there for the dragon; 65,536 where only an error limits the run.
     #[default]
     Auto,
-    /// So many times the target; as `Auto` where only an error limits the run (or the target is 1).
+    /// This many times the target; as `Auto` where only an error limits the run.
     Times(f64),
     /// At this number of triangles.
     Triangles(u64),
@@ -35,17 +35,18 @@ pub enum Start {
 }
 
 impl Start {
-    /// The number of triangles for a target; `usize::MAX` for no pre-simplification.
+    /// The number of triangles for a target, `None` where only an error limits the run; `usize::MAX` for no
+    /// pre-simplification.
     #[must_use]
-    pub fn triangles(self, target: usize) -> usize {
-        match self {
-            Self::Auto | Self::Times(_) if target <= 1 => 65_536,
-            Self::Times(n) => (n * target as f64) as usize,
-            Self::Auto => target
+    pub fn triangles(self, target: Option<usize>) -> usize {
+        match (self, target) {
+            (Self::Auto | Self::Times(_), None) => 65_536,
+            (Self::Times(n), Some(target)) => (n * target as f64) as usize,
+            (Self::Auto, Some(target)) => target
                 .saturating_mul(10)
                 .min(target.saturating_mul(4).max(32_768)),
-            Self::Triangles(n) => usize::try_from(n).unwrap_or(usize::MAX),
-            Self::Input => usize::MAX,
+            (Self::Triangles(n), _) => usize::try_from(n).unwrap_or(usize::MAX),
+            (Self::Input, _) => usize::MAX,
         }
     }
 }
@@ -54,9 +55,9 @@ impl Start {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Size {
-    /// So many pixels, 1 to 4096.
+    /// A number of pixels, 1 to 4096.
     Pixels(u32),
-    /// So many pixels for every triangle of the target, besides those of a square of [`Size::LEAST`]; a multiple of 8
+    /// A number of pixels for every triangle of the target, besides those of a square of [`Size::LEAST`]; a multiple of 8
     /// and at most [`Size::MOST`] along each side.
     PerTriangle {
         /// Pixels for a triangle.
@@ -68,16 +69,16 @@ impl Size {
     /// Smallest side that follows from the target.
     pub const LEAST: u32 = 64;
 
-    /// Largest side that follows from the target, and what stands for no target.
+    /// Largest side that follows from the target, and that of runs without one.
     pub const MOST: u32 = 256;
 
-    /// The side in pixels for a target; a target of 1 means none.
+    /// The side in pixels for a target; `None` where only an error limits the run.
     #[must_use]
-    pub fn pixels(self, target: usize) -> u32 {
-        match self {
-            Self::Pixels(n) => n,
-            Self::PerTriangle { .. } if target <= 1 => Self::MOST,
-            Self::PerTriangle { per_triangle } => {
+    pub fn pixels(self, target: Option<usize>) -> u32 {
+        match (self, target) {
+            (Self::Pixels(n), _) => n,
+            (Self::PerTriangle { .. }, None) => Self::MOST,
+            (Self::PerTriangle { per_triangle }, Some(target)) => {
                 let own = u64::from(per_triangle).saturating_mul(target as u64);
                 let area = own.saturating_add(u64::from(Self::LEAST).pow(2));
                 let side = area.min(u64::from(Self::MOST).pow(2)).isqrt() as u32;
@@ -93,7 +94,7 @@ impl From<u32> for Size {
     }
 }
 
-/// What the driving views are shaded like.
+/// Shading of the driving views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DrivingShading {
@@ -119,7 +120,7 @@ impl DrivingShading {
     }
 }
 
-/// How pictures find what a removed triangle hid.
+/// The engine by which pictures find the surface behind a removed triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineName {
@@ -185,11 +186,7 @@ impl Default for ImageOptions {
 }
 
 impl ImageOptions {
-    /// Tests every option that has a range.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] that names the option, its value and the range.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check_ranges(&self) -> Result<()> {
         if let Size::Pixels(size) = self.size
             && (size == 0 || size > 4096)
         {
@@ -232,7 +229,7 @@ impl ImageOptions {
 
     /// Whether the result is held against the memoryless method's; `only_counted`: nothing limits the run but a number
     /// of triangles.
-    pub(in super::super) fn is_contested(&self, only_counted: bool) -> bool {
+    pub(super) fn is_contested(&self, only_counted: bool) -> bool {
         let around = !matches!(self.views, ViewsName::File(_)) && self.interior_views == 0;
         self.fall_back && only_counted && around
     }
@@ -246,7 +243,7 @@ impl ImageOptions {
     pub fn views(&self, original: &Mesh, frame: Frame, round: u32) -> Result<ViewSet> {
         let sphere = Sphere::of_mesh(original)
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
-        let size = self.size.pixels(1);
+        let size = self.size.pixels(None);
         let set = match self.views.directions() {
             Some(directions) => ViewSet::around(
                 &sphere,

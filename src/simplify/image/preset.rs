@@ -117,6 +117,48 @@ impl Preset {
     }
 }
 
+impl ImageOptions {
+    /// Goes on to another recipe or shading: every option that has the value of the recipe so far gets that of the new
+    /// one.
+    pub(in super::super) fn follow(&mut self, preset: Preset, shading: DrivingShading) {
+        fn keep<T: PartialEq>(own: &mut T, old: T, new: T) {
+            if *own == old {
+                *own = new;
+            }
+        }
+        let (old, new) = (self.preset.shaded(self.shading), preset.shaded(shading));
+        (self.preset, self.shading) = (preset, shading);
+        keep(&mut self.views, old.views, new.views);
+        keep(&mut self.size, old.size, new.size);
+        keep(&mut self.samples, old.samples, new.samples);
+        keep(&mut self.specular, old.specular, new.specular);
+        keep(
+            &mut self.interior_views,
+            old.interior_views,
+            new.interior_views,
+        );
+        keep(&mut self.start, old.start, new.start);
+        keep(&mut self.engine, old.engine, new.engine);
+        keep(&mut self.placement, old.placement, new.placement);
+        keep(&mut self.swept_weight, old.swept_weight, new.swept_weight);
+        keep(&mut self.glance, old.glance, new.glance);
+        keep(&mut self.fall_back, old.fall_back, new.fall_back);
+        let (polish, old, new) = (&mut self.polish, old.polish, new.polish);
+        keep(&mut polish.sweeps, old.sweeps, new.sweeps);
+        keep(&mut polish.flips_every, old.flips_every, new.flips_every);
+        keep(
+            &mut polish.cameras_every,
+            old.cameras_every,
+            new.cameras_every,
+        );
+        keep(
+            &mut polish.deviation_weight,
+            old.deviation_weight,
+            new.deviation_weight,
+        );
+    }
+}
+
 impl fmt::Display for Preset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

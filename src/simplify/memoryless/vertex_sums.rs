@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::method::{Gradient, MemorylessOptions, Objective};
+use super::{MemorylessOptions, Objective, constraints::Gradient};
 use crate::{
     collapse::{LiveMesh, Patch, legality::STAR_LIMIT},
     geometry::{self, Sym3},

@@ -14,6 +14,9 @@
 
 mod method;
 mod options;
+mod report;
+mod run;
 
 pub use method::ToleranceMethod;
-pub use options::{Distance, Guarantee, ToleranceOptions};
+pub use options::{Distance, ToleranceOptions};
+pub use report::Guarantee;

@@ -1,71 +1,24 @@
-//! View-bounded simplification: no point of the original surface is seen under a larger angle from what stands for it
-//! than allowed, by any viewer in a cell (after Eisemann & Décoret 2007; notes, 4.9).
-//!
-//! Collapses come in the order of the memoryless method and are placed by it; where its place is refused, the midpoint and
-//! the ends are tried, the cheapest first. Legal is what keeps every point within the angle of where its whole history
-//! has put it, exactly and not by adding up steps: see [`Correspondence`]. Deviation from the notes: not a sum of
-//! displacements but the displacement itself decides, and beside its length its direction (see [`AngleLimit`]).
-//! A mesh that is far from the origin for its size is moved there first, exactly, so that the rounding of large
-//! coordinates has no part in what is decided. The bound is on positions; texture coordinates are carried along as by every other method. Angles: degrees in options,
-//! radians inside.
+//! The method: the order and places of the memoryless method, and the account of where every point went.
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
-use super::super::memoryless::{self, Memoryless, MemorylessOptions, Objective};
+use super::{
+    super::{
+        memoryless::{self, Memoryless, MemorylessOptions, Objective},
+        methods::MethodRun,
+    },
+    ViewBoundedOptions,
+};
 use crate::{
     Error, Progress, Result,
-    bound::{
-        correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
-        view_cell::ViewCell,
-    },
+    bound::correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
     collapse::{
         Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan,
         Proposal, Reason, Refusal, Review, Site,
     },
 };
 
-/// Options of the method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct ViewBoundedOptions {
-    /// The viewpoints, in the units of the mesh.
-    pub cell: ViewCell,
-    /// Largest angle between an original point and what stands for it, in degrees; from 0 to below 90.
-    pub error_deg: f64,
-    /// Where new vertices are wanted.
-    pub placement: MemorylessOptions,
-}
-
-impl ViewBoundedOptions {
-    /// The bound `error_deg` (degrees) for the viewers in `cell` (units of the mesh), with default placement.
-    #[must_use]
-    pub fn new(cell: ViewCell, error_deg: f64) -> Self {
-        Self {
-            cell,
-            error_deg,
-            placement: MemorylessOptions::default(),
-        }
-    }
-
-    pub(in super::super) fn check(&self) -> Result<()> {
-        if !(0.0..90.0).contains(&self.error_deg) {
-            return Err(Error::Usage(format!(
-                "the angle is {} degrees; expected at least 0 and less than 90",
-                self.error_deg
-            )));
-        }
-        if !(0.0..=1.0).contains(&self.placement.volume_weight) {
-            return Err(Error::Usage(format!(
-                "volume-weight is {}; expected a number from 0 to 1",
-                self.placement.volume_weight
-            )));
-        }
-        Ok(())
-    }
-}
-
-/// The method: the order and places of [`Memoryless`], and an account of what became of every point.
+/// The order and places of [`Memoryless`], and the account of where every point went.
 #[derive(Debug)]
 pub struct ViewBounded {
     placing: Memoryless,
@@ -172,7 +125,7 @@ const NO_MAP: Refusal = Refusal::Method(&Reason {
     is_bound: false,
 });
 
-/// A point would be farther from what stands for it than is allowed.
+/// A point would be farther from its replacement than is allowed.
 const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason {
     index: 1,
     name: "bound",
@@ -183,7 +136,7 @@ const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason {
 const STAR_LIMIT: usize = 64;
 
 /// Least coordinates along the axes along which a mesh is this many sizes away from the origin; 0 along others.
-/// Differences of coordinates that are alike in all but so many bits are exact.
+/// Differences of coordinates that are alike in their leading bits are exact.
 const FAR: f64 = 512.0;
 
 fn origin(live: &LiveMesh) -> DVec3 {

@@ -1,51 +1,15 @@
-//! Visibility-guided simplification: Zhang & Turk 2002, section 5.
-//!
-//! A vertex carries two quadrics. `Q`, that of [`quadric`](super::super::quadric), decides where the new vertex lies. `Q_v`,
-//! in which the planes of a face and of its boundary edges count by the square of its visibility (equations 5.8 to
-//! 5.10), decides which edge is next; it never places, because it is singular where nothing is seen. Both are sums
-//! over the ends of an edge. Deviation: the cost is `Q_v + 1e-6 Q`. Where nothing is seen all `Q_v` are 0, and the
-//! second term lets such parts keep their shape as long as possible, as under the method without visibility.
-//! Weights belong to the triangles of the input; nothing is measured again during a run. Costs: as those of the
-//! quadric method, in frame units.
+//! The method: two quadrics per vertex, one to place and one to order.
 
 use std::any::Any;
 
-use serde::{Deserialize, Serialize};
-
-use super::super::quadric::{QuadricMethod, QuadricOptions};
+use super::{super::quadric::QuadricMethod, VisibilityOptions};
 use crate::{
     Error, Result,
     collapse::{
         Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
         Review, Site, Tileable,
     },
-    visibility,
 };
-
-/// How much `Q` counts beside `Q_v`: enough to order what nobody sees, and no more than a visibility of 0.001.
-pub const TIE_WEIGHT: f64 = 1e-6;
-
-/// Options of the method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct VisibilityOptions {
-    /// The planes of faces and boundaries.
-    pub quadric: QuadricOptions,
-    /// How much the cost without visibility counts beside the cost with it; at least 0.
-    pub tie_weight: f64,
-    /// How the visibility of the input's triangles is measured, or was.
-    pub measure: visibility::MeasureOptions,
-}
-
-impl Default for VisibilityOptions {
-    fn default() -> Self {
-        Self {
-            quadric: QuadricOptions::default(),
-            tie_weight: TIE_WEIGHT,
-            measure: visibility::MeasureOptions::default(),
-        }
-    }
-}
 
 /// The method: two quadrics per vertex.
 #[derive(Clone, Debug)]

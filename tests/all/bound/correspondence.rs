@@ -6,13 +6,12 @@ mod judged;
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     bound::{
         correspondence::{Collapse, Correspondence, Face, Fan, Scratch},
         view_cell::ViewCell,
     },
     mesh::{Mesh, canonical},
-    simplify::{Amount, Options, simplify, view_bounded::ViewBoundedOptions},
+    simplify::{Options, Target, simplify, view_bounded::ViewBoundedOptions},
 };
 use proptest::prelude::*;
 
@@ -330,13 +329,11 @@ fn run(mesh: &Mesh, triangles: u64, most: f64) -> (Correspondence, Mesh) {
     let cell = ViewCell::half_space(DVec3::new(0.0, 0.0, 1e4), DVec3::NEG_Z).expect("a half-space");
     let options = Options::view_bounded(
         ViewBoundedOptions::new(cell, (most / 1e4).to_degrees()),
-        Amount::Triangles(triangles),
+        Target::Triangles(triangles),
     );
-    let outcome = simplify(mesh, &options, &Silent).expect("valid");
-    (
-        outcome.correspondence.expect("this method keeps account"),
-        outcome.mesh,
-    )
+    let outcome = simplify(mesh, &options).expect("valid");
+    let map = outcome.correspondence().expect("this method keeps account");
+    (map.clone(), outcome.mesh)
 }
 
 proptest! {

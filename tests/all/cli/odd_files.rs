@@ -3,10 +3,9 @@
 use std::{fs, process::Command};
 
 use lodmark::{
-    Silent,
     mesh::{Mesh, MeshParts, generate},
     num::Precision,
-    simplify::{Amount, Options, simplify},
+    simplify::{Options, Target, simplify},
 };
 use proptest::prelude::*;
 
@@ -176,9 +175,9 @@ proptest! {
                 .expect("finite")
         };
         for run in [Options::image, Options::memoryless, Options::quadric] {
-            let options = run(Amount::Triangles(target));
+            let options = run(Target::Triangles(target));
             let [one, other] = [1.0, factor].map(|f| {
-                simplify(&double(f), &options, &Silent).expect("simplifies").mesh
+                simplify(&double(f), &options).expect("simplifies").mesh
             });
             prop_assert_eq!(one.triangles(), other.triangles());
             let scaled: Vec<_> = one.positions().iter().map(|&p| p * factor).collect();

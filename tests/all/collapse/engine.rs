@@ -12,7 +12,7 @@ use lodmark::{
     },
     mesh::Mesh,
     num::Frame,
-    simplify::{Amount, Options, Stop, simplify},
+    simplify::{Options, Stop, Target, simplify},
     view::frame_of,
 };
 use proptest::prelude::*;
@@ -388,12 +388,9 @@ proptest! {
 fn thread_counts_give_equal_meshes_and_counters() {
     let mesh = meshes::torus(40, 24, 5);
     for schedule in [Schedule::Lazy, Schedule::Semi, Schedule::Eager] {
-        let options = Options {
-            schedule,
-            ..Options::memoryless(Amount::Triangles(300))
-        };
+        let options = Options::memoryless(Target::triangles(300)).schedule(schedule);
         same_on_all_threads(|| {
-            let outcome = simplify(&mesh, &options, &Silent).expect("valid");
+            let outcome = simplify(&mesh, &options).expect("valid");
             (outcome.mesh, outcome.history.to_bytes(), outcome.phases)
         });
     }
@@ -563,7 +560,7 @@ fn a_sheet_with_two_sides_is_simplified_as_one() {
     let back: Vec<[u32; 3]> = parts.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     parts.triangles.extend(back);
     let mesh = Mesh::new(parts).expect("valid");
-    let outcome = simplify(&mesh, &Options::memoryless(Amount::Triangles(80)), &Silent);
+    let outcome = simplify(&mesh, &Options::memoryless(Target::Triangles(80)));
     let outcome = outcome.expect("valid");
     assert_eq!(outcome.stop, Stop::TargetReached);
     let triangles = outcome.mesh.triangles();

@@ -16,7 +16,7 @@ use lodmark::{
     },
     mesh::{Materials, Mesh, MeshParts, canonical},
     simplify::{
-        Amount, Options, Outcome, simplify,
+        Options, Outcome, Target, simplify,
         tolerance::{Distance, ToleranceOptions},
         view_bounded::ViewBoundedOptions,
     },
@@ -294,13 +294,13 @@ fn looks(mesh: &Mesh, outcome: &Outcome) -> f64 {
 fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
     let mesh = disc(2_000);
     let own = ToleranceOptions::new(Distance::OfDiagonal(0.005));
-    let options = Options::tolerance(own, Amount::Triangles(100));
-    let tolerance = simplify(&mesh, &options, &Silent).expect("valid");
+    let options = Options::tolerance(own, Target::Triangles(100));
+    let tolerance = simplify(&mesh, &options).expect("valid");
     let cell = ViewCell::point(DVec3::new(0.0, 0.0, 5.0)).expect("a point");
     let own = ViewBoundedOptions::new(cell, 0.1);
-    let options = Options::view_bounded(own, Amount::ErrorOnly);
+    let options = Options::view_bounded(own, Target::ErrorOnly);
     let fewer = disc(600);
-    let view_bounded = simplify(&fewer, &options, &Silent).expect("valid");
+    let view_bounded = simplify(&fewer, &options).expect("valid");
     for (mesh, outcome) in [(mesh, tolerance), (fewer, view_bounded)] {
         let left = outcome.mesh.triangles().len();
         assert!(left <= 100, "{left}");

@@ -1,10 +1,10 @@
 //! Recorded runs: any level, in both directions, from bytes nobody can trust.
 
 use lodmark::{
-    Error, Silent,
+    Error,
     collapse::{History, Replay},
     mesh::Mesh,
-    simplify::{Amount, Options, Outcome, simplify},
+    simplify::{Options, Outcome, Target, simplify},
 };
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
@@ -12,10 +12,10 @@ use sha2::{Digest, Sha256};
 use crate::support::meshes;
 
 fn run(mesh: &Mesh, triangles: u64) -> Outcome {
-    let mut options = Options::memoryless(Amount::Triangles(triangles));
+    let mut options = Options::memoryless(Target::Triangles(triangles));
     // What is repaired after the last collapse belongs to the level where the run ended.
     options.unfold = false;
-    simplify(mesh, &options, &Silent).expect("valid")
+    simplify(mesh, &options).expect("valid")
 }
 
 fn read(bytes: &[u8]) -> Result<History, Error> {
@@ -115,8 +115,8 @@ fn a_newer_format_is_unsupported_rather_than_damaged() {
 
 #[test]
 fn the_header_says_what_made_it() {
-    let wanted = Options::memoryless(Amount::Triangles(40));
-    let outcome = simplify(&meshes::torus(8, 6, 1), &wanted, &Silent).expect("valid");
+    let wanted = Options::memoryless(Target::Triangles(40));
+    let outcome = simplify(&meshes::torus(8, 6, 1), &wanted).expect("valid");
     let header = outcome.history.header();
     assert_eq!(header.version, env!("CARGO_PKG_VERSION"));
     let options: Options = serde_json::from_str(&header.options).expect("JSON");

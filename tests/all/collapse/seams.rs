@@ -7,7 +7,7 @@ use lodmark::{
     Silent,
     collapse::{Engine, LiveMesh, Rules, Schedule, Topology},
     mesh::{ChannelKind, Mesh},
-    simplify::{Amount, Options, Stop, simplify},
+    simplify::{Options, Stop, Target, simplify},
     view::frame_of,
 };
 use proptest::prelude::*;
@@ -111,8 +111,8 @@ proptest! {
 fn charts_and_materials_of_a_cube_keep_their_corners() {
     for (with_charts, with_materials) in [(true, false), (false, true), (true, true)] {
         let mesh = meshes::cube(6, with_charts, with_materials);
-        let options = Options::memoryless(Amount::Triangles(24));
-        let outcome = simplify(&mesh, &options, &Silent).expect("valid");
+        let options = Options::memoryless(Target::Triangles(24));
+        let outcome = simplify(&mesh, &options).expect("valid");
         assert_eq!(outcome.stop, Stop::TargetReached);
         let key = |p: &DVec3| p.to_array().map(f64::to_bits);
         let sorted = |mut corners: Vec<DVec3>| {
@@ -155,7 +155,7 @@ fn normals_that_differ_everywhere_do_not_stop_simplification() {
         ..parts
     })
     .expect("valid");
-    let outcome = simplify(&mesh, &Options::memoryless(Amount::Triangles(60)), &Silent);
+    let outcome = simplify(&mesh, &Options::memoryless(Target::Triangles(60)));
     assert_eq!(outcome.expect("valid").stop, Stop::TargetReached);
 }
 

@@ -11,7 +11,7 @@ use lodmark::{
     num::math,
     raster::LayerEngine,
     simplify::{
-        Amount, MethodOptions, Options,
+        MethodOptions, Options, Target,
         image::{Deviation, Limits, Pictures, Polish, polish},
         simplify,
     },
@@ -153,7 +153,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
 fn weights_that_are_no_weights_are_refused_by_name() {
     let mesh = generate::icosphere(2);
     for (name, weight) in [("swept-weight", f64::NAN), ("deviation-weight", -0.5)] {
-        let mut options = Options::image(Amount::Triangles(100));
+        let mut options = Options::image(Target::Triangles(100));
         let MethodOptions::Image(own) = &mut options.method else {
             unreachable!("image-driven");
         };
@@ -162,7 +162,7 @@ fn weights_that_are_no_weights_are_refused_by_name() {
         } else {
             own.polish.deviation_weight = weight;
         }
-        let refused = simplify(&mesh, &options, &Silent);
+        let refused = simplify(&mesh, &options);
         assert!(
             matches!(&refused, Err(Error::Usage(what)) if what.contains(name)),
             "{refused:?}"

@@ -2,25 +2,22 @@
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     mesh::{Mesh, generate},
-    simplify::{Amount, MethodOptions, Options, Outcome, Replay, simplify},
+    simplify::{MethodOptions, Options, Outcome, Replay, Target, simplify},
 };
 use proptest::prelude::*;
 
 use crate::support::{faults, meshes, on_threads};
 
 fn methods(triangles: u64) -> [Options; 2] {
-    let target = Amount::Triangles(triangles);
+    let target = Target::Triangles(triangles);
     [Options::memoryless(target), Options::quadric(target)]
 }
 
 fn run(mesh: &Mesh, options: &Options, unfold: bool) -> Outcome {
-    let options = Options {
-        unfold,
-        ..options.clone()
-    };
-    simplify(mesh, &options, &Silent).expect("runs")
+    let mut options = options.clone();
+    options.unfold = unfold;
+    simplify(mesh, &options).expect("runs")
 }
 
 /// Two sheets with thin tubes between them, one per cell of a grid: what noise in a scanned surface leaves.
@@ -127,7 +124,7 @@ fn a_fold_of_the_original_is_kept() {
 
 #[test]
 fn no_repair_is_asked_for_where_others_guard_against_folds() {
-    let target = Amount::Triangles(10);
+    let target = Target::Triangles(10);
     for options in methods(10) {
         assert!(options.unfold);
         assert!(!matches!(options.method, MethodOptions::Image(_)));

@@ -11,8 +11,8 @@ use lodmark::{
     num::math,
     raster::{self, BucketEngine, Scene},
     simplify::{
-        self, Amount, MethodOptions, Options, Stop,
-        image::{ImageDriven, ImageOptions, Preset, Reference, Start},
+        self, MethodOptions, Options, Stop, Target,
+        image::{ImageDriven, Preset, Reference, Size, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -342,19 +342,23 @@ impl lodmark::collapse::Observer for Taken {
 }
 
 fn options(triangles: u64) -> Options {
-    let mut options = Options::image(Amount::Triangles(triangles));
-    options.method = MethodOptions::Image(ImageOptions {
-        size: 64.into(),
-        ..Preset::Paper.options()
-    });
-    options
+    published(64, Start::Auto, triangles)
+}
+
+/// The published method but for the schedule, which notices costs that fall.
+fn published(size: u32, start: Start, triangles: u64) -> Options {
+    Options::image(Target::triangles(triangles))
+        .preset(Preset::Paper)
+        .schedule(Schedule::Semi)
+        .size(size)
+        .start(start)
 }
 
 #[test]
 fn no_number_of_threads_changes_the_result() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     same_on_all_threads(|| {
-        let outcome = simplify::simplify(&mesh, &options(200), &Silent).expect("simplified");
+        let outcome = simplify::simplify(&mesh, &options(200)).expect("simplified");
         (outcome.mesh, outcome.history.to_bytes(), outcome.phases)
     });
 }
@@ -362,14 +366,10 @@ fn no_number_of_threads_changes_the_result() {
 #[test]
 fn an_error_limit_is_never_exceeded_and_nearly_used_up() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
-    let limited = Options {
-        target: Amount::ErrorOnly,
-        error_rms: Some(3.0),
-        ..options(1)
-    };
-    let outcome = simplify::simplify(&mesh, &limited, &Silent).expect("simplified");
+    let limited = options(1).target(Target::ErrorOnly).error_rms(3.0);
+    let outcome = simplify::simplify(&mesh, &limited).expect("simplified");
     assert_eq!(outcome.stop, Stop::ErrorLimit);
-    let rms = outcome.error_rms.expect("driven by images");
+    let rms = outcome.error_rms().expect("driven by images");
     assert!(rms <= 3.0 && rms > 2.5, "{rms}");
 }
 
@@ -377,13 +377,8 @@ fn an_error_limit_is_never_exceeded_and_nearly_used_up() {
 fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     let started = |triangles, start| {
-        let mut options = options(triangles);
-        options.method = MethodOptions::Image(ImageOptions {
-            size: 32.into(),
-            start: Start::Triangles(start),
-            ..Preset::Paper.options()
-        });
-        simplify::simplify(&mesh, &options, &Silent).expect("simplified")
+        let options = published(32, Start::Triangles(start), triangles);
+        simplify::simplify(&mesh, &options).expect("simplified")
     };
     let (direct, far) = (started(600, 300), started(100, 300));
     assert!((599..=600).contains(&direct.mesh.triangles().len()));
@@ -394,13 +389,37 @@ fn a_target_above_the_start_of_the_pictures_is_not_overshot() {
 
 #[test]
 fn a_method_without_images_refuses_an_error_measured_on_them() {
-    let options = Options {
-        error_rms: Some(1.0),
-        ..Options::memoryless(Amount::Triangles(10))
-    };
-    let refused =
-        simplify::simplify(&generate::tetrahedron(), &options, &Silent).expect_err("refused");
+    let options = Options::memoryless(Target::triangles(10)).error_rms(1.0);
+    let refused = simplify::simplify(&generate::tetrahedron(), &options).expect_err("refused");
     assert_eq!(refused.exit_code(), 2);
+}
+
+#[test]
+fn one_triangle_is_a_target_like_any_other() {
+    let of = |target| {
+        let size = Size::PerTriangle { per_triangle: 9 };
+        (size.pixels(target), Start::Times(2.2).triangles(target))
+    };
+    assert_eq!(of(Some(1)), (Size::LEAST, 2));
+    assert_eq!(of(None), (Size::MOST, 65_536), "only an error limits it");
+    assert_eq!(Start::Auto.triangles(Some(1)), 10);
+    let mesh = canonical(&generate::icosphere(1)).mesh;
+    let used = |options: Options| {
+        let outcome = simplify::simplify(&mesh, &options).expect("simplified");
+        let MethodOptions::Image(own) = outcome.options.method else {
+            panic!("{:?}", outcome.options);
+        };
+        (own.size, own.start)
+    };
+    let fast = |target| Options::image(target).preset(Preset::Fast).polish(0);
+    let [one, few] = [Target::triangles(1), Target::ratio(1e-9)].map(|t| used(fast(t)));
+    assert_eq!(one, (Size::Pixels(Size::LEAST), Start::Triangles(1)));
+    assert_eq!(few, one);
+    let limited = used(fast(Target::ErrorOnly).error_rms(0.5));
+    assert_eq!(
+        limited,
+        (Size::Pixels(Size::MOST), Start::Triangles(65_536))
+    );
 }
 
 #[test]
@@ -412,6 +431,6 @@ fn pre_simplification_leaves_as_many_triangles_as_the_paper_had() {
         (8_191, 32_768),
         (16_384, 65_536),
     ] {
-        assert_eq!(Start::Auto.triangles(target), start);
+        assert_eq!(Start::Auto.triangles(Some(target)), start);
     }
 }

@@ -8,7 +8,7 @@ use lodmark::{
     metric::{appearance::flat, surface::surface_distance},
     raster::Scene,
     simplify::{
-        Amount, MethodOptions, Options,
+        Options, Schedule, Target,
         image::{ImageOptions, Preset, Size, Start},
         simplify,
     },
@@ -27,11 +27,9 @@ fn results() -> &'static (Mesh, [Mesh; 3]) {
                 interior_views,
                 ..Preset::Paper.options()
             };
-            let options = Options {
-                method: MethodOptions::Image(own),
-                ..Options::image(Amount::Triangles(220))
-            };
-            simplify(&mesh, &options, &Silent).expect("runs").mesh
+            // Another schedule than the preset's notices costs that fall.
+            let options = Options::new(own, Target::triangles(220)).schedule(Schedule::Semi);
+            simplify(&mesh, &options).expect("runs").mesh
         });
         (mesh, reduced)
     })

@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     collapse::{Anchor, EdgeStar, LiveMesh, Rules, Site},
     mesh::{Mesh, MeshParts},
     num::{Frame, Precision},
     simplify::{
-        Amount, Options, Stop,
+        Options, Stop, Target,
         memoryless::{ConstraintOrder, MemorylessOptions, Objective, propose},
         simplify,
     },
@@ -263,8 +262,8 @@ fn a_proposal_is_judged_at_the_position_the_file_can_store() {
 #[test]
 fn a_scaled_mesh_is_simplified_to_the_scaled_result() {
     let mesh = meshes::torus(20, 12, 9);
-    let options = Options::memoryless(Amount::Ratio(0.3));
-    let plain = simplify(&mesh, &options, &Silent).expect("valid").mesh;
+    let options = Options::memoryless(Target::Ratio(0.3));
+    let plain = simplify(&mesh, &options).expect("valid").mesh;
     for exponent in [-90, 60] {
         let frame = Frame { exponent };
         let mut parts = mesh.clone().into_parts();
@@ -273,7 +272,7 @@ fn a_scaled_mesh_is_simplified_to_the_scaled_result() {
             .iter_mut()
             .for_each(|p| *p = frame.leave(*p));
         let scaled = Mesh::new(parts).expect("valid");
-        let found = simplify(&scaled, &options, &Silent).expect("valid").mesh;
+        let found = simplify(&scaled, &options).expect("valid").mesh;
         let expected: Vec<DVec3> = plain.positions().iter().map(|&p| frame.leave(p)).collect();
         assert_eq!(found.positions(), expected);
         assert_eq!(found.triangles(), plain.triangles());
@@ -283,27 +282,27 @@ fn a_scaled_mesh_is_simplified_to_the_scaled_result() {
 #[test]
 fn targets_are_reached_refused_or_explained() {
     let mesh = meshes::torus(10, 8, 1);
-    let run = |target| simplify(&mesh, &Options::memoryless(target), &Silent);
-    let half = run(Amount::Ratio(0.5)).expect("valid");
+    let run = |target| simplify(&mesh, &Options::memoryless(target));
+    let half = run(Target::Ratio(0.5)).expect("valid");
     assert_eq!(
         (half.mesh.triangles().len(), half.stop),
         (80, Stop::TargetReached)
     );
-    let copy = run(Amount::Triangles(1000)).expect("valid");
+    let copy = run(Target::Triangles(1000)).expect("valid");
     assert_eq!(
         (copy.mesh, copy.stop),
         (mesh.clone(), Stop::TargetAboveInput)
     );
-    let least = run(Amount::Triangles(1)).expect("valid");
+    let least = run(Target::Triangles(1)).expect("valid");
     let Stop::NoLegalCollapse { refusals } = least.stop else {
         panic!("a torus became one triangle");
     };
     assert!(refusals.total() > 0 && least.mesh.triangles().len() >= 14);
     for wrong in [
-        Amount::Triangles(0),
-        Amount::Ratio(0.0),
-        Amount::Ratio(1.5),
-        Amount::Ratio(f64::NAN),
+        Target::Triangles(0),
+        Target::Ratio(0.0),
+        Target::Ratio(1.5),
+        Target::Ratio(f64::NAN),
     ] {
         assert_eq!(run(wrong).expect_err("out of range").exit_code(), 2);
     }

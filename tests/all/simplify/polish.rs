@@ -10,12 +10,12 @@ use lodmark::{
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
     raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{
-        Amount, MethodOptions, Options, Outcome,
+        MethodOptions, Options, Outcome, Target,
         image::{
             DrivingShading, ImageOptions, Limits, Pictures, Polish, PolishCounters, Preset, Start,
             polish,
         },
-        simplify,
+        simplify, simplify_with,
     },
     view::{Interpolation, Sphere, ViewSet, ViewsName, frame_of},
 };
@@ -148,8 +148,7 @@ fn both_engines_polish_alike() {
 
 /// A run with everything: pre-simplification, collapses, moves, flips, turned cameras.
 fn options(triangles: u64, shading: DrivingShading) -> Options {
-    let mut options = Options::image(Amount::Triangles(triangles));
-    options.method = MethodOptions::Image(ImageOptions {
+    let own = ImageOptions {
         views: ViewsName::Spiral(5),
         size: 32.into(),
         samples: 1,
@@ -164,12 +163,12 @@ fn options(triangles: u64, shading: DrivingShading) -> Options {
         // Polishing is looked at, whatever becomes of its result.
         fall_back: false,
         ..Preset::Default.options()
-    });
-    options
+    };
+    Options::new(own, Target::triangles(triangles))
 }
 
 fn run(mesh: &Mesh, triangles: u64, shading: DrivingShading) -> Outcome {
-    simplify(mesh, &options(triangles, shading), &Silent).expect("simplified")
+    simplify(mesh, &options(triangles, shading)).expect("simplified")
 }
 
 fn shading(kind: usize) -> DrivingShading {
@@ -205,7 +204,7 @@ proptest! {
         if mesh.triangles().len() as u64 > triangles {
             prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), outcome.mesh);
         } else {
-            prop_assert!(outcome.polish.is_none() && history.is_empty(), "a copy");
+            prop_assert!(outcome.polish().is_none() && history.is_empty(), "a copy");
         }
         while walk.back() {}
         prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), LiveMesh::new(&mesh, history.header().frame).to_mesh().expect("a mesh"));
@@ -283,8 +282,9 @@ fn no_number_of_threads_changes_what_polishing_does() {
     for kind in 0..3 {
         same_on_all_threads(|| {
             let outcome = run(&mesh, 150, shading(kind));
-            assert!(outcome.polish.as_ref().is_some_and(|p| p.moves > 20));
-            (outcome.mesh, outcome.history.to_bytes(), outcome.polish)
+            assert!(outcome.polish().is_some_and(|p| p.moves > 20));
+            let polish = outcome.polish().cloned();
+            (outcome.mesh, outcome.history.to_bytes(), polish)
         });
     }
 }
@@ -322,7 +322,7 @@ fn a_locked_vertex_stays_where_it_is() {
 #[test]
 fn polishing_can_be_interrupted() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
-    let stopped = simplify(
+    let stopped = simplify_with(
         &mesh,
         &options(150, DrivingShading::Flat),
         &StopsAfter::new("polish", 4),
@@ -333,14 +333,12 @@ fn polishing_can_be_interrupted() {
 #[test]
 fn under_an_error_limit_the_cameras_stay_and_the_limit_holds() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
-    let limited = Options {
-        error_rms: Some(6.0),
-        target: Amount::ErrorOnly,
-        ..options(1, DrivingShading::Flat)
-    };
-    let outcome = simplify(&mesh, &limited, &Silent).expect("simplified");
-    assert!(outcome.error_rms.is_some_and(|rms| rms <= 6.0));
-    assert_eq!(outcome.polish.expect("polished").cameras.len(), 1);
+    let limited = options(1, DrivingShading::Flat)
+        .target(Target::ErrorOnly)
+        .error_rms(6.0);
+    let outcome = simplify(&mesh, &limited).expect("simplified");
+    assert!(outcome.error_rms().is_some_and(|rms| rms <= 6.0));
+    assert_eq!(outcome.polish().expect("polished").cameras.len(), 1);
 }
 
 #[test]
@@ -350,9 +348,9 @@ fn cameras_are_turned_as_often_as_asked_and_never_make_a_set_of_pictures_worse()
         150,
         DrivingShading::Flat,
     );
-    let counters = outcome.polish.expect("polished");
+    let counters = outcome.polish().expect("polished");
     assert_eq!(counters.cameras.len(), 2, "4 sweeps, turned after 2");
-    for [before, after] in counters.cameras {
+    for [before, after] in &counters.cameras {
         assert!(after <= before, "{before} to {after}");
     }
 }
@@ -541,18 +539,18 @@ fn polishing_turns_no_face_over_though_pictures_would_gain_by_it() {
         let mesh = canonical(&generate::by_name(name).expect("a name of the list")).mesh;
         for triangles in [60, 150] {
             let mut options = options(triangles, DrivingShading::Gouraud);
-            let polished = simplify(&mesh, &options, &Silent).expect("simplified");
+            let polished = simplify(&mesh, &options).expect("simplified");
             let MethodOptions::Image(own) = &mut options.method else {
                 unreachable!("image-driven");
             };
             own.polish.sweeps = 0;
-            let plain = simplify(&mesh, &options, &Silent).expect("simplified");
+            let plain = simplify(&mesh, &options).expect("simplified");
             let [before, after] = [plain, polished.clone()].map(|o| faults(&mesh, &o.mesh)[1]);
             assert!(
                 after <= before,
                 "{name} to {triangles}: {before}, then {after}"
             );
-            moved += polished.polish.expect("polished").moves;
+            moved += polished.polish().expect("polished").moves;
         }
     }
     assert!(moved > 500, "{moved}");

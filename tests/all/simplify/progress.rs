@@ -5,7 +5,7 @@ use lodmark::{
     bound::view_cell::ViewCell,
     mesh::{Mesh, canonical},
     simplify::{
-        Amount, MethodOptions, Options, simplify,
+        Options, Target, simplify_with,
         tolerance::{Distance, ToleranceOptions},
         view_bounded::ViewBoundedOptions,
     },
@@ -16,7 +16,7 @@ use crate::support::{Recorder, StopsAfter, at, folder, meshes};
 
 /// A run of every method.
 fn methods() -> Vec<Options> {
-    let target = Amount::Triangles(200);
+    let target = Target::Triangles(200);
     let cell = ViewCell::point(at(0.0, 0.0, 9.0)).expect("a point");
     vec![
         Options::image(target),
@@ -38,12 +38,12 @@ fn every_method_stops_between_two_collapses() {
     for options in methods() {
         let name = options.method.name();
         let whole = StopsAfter::new("collapse", u64::MAX);
-        simplify(&mesh, &options, &whole).expect("nobody interrupts");
+        simplify_with(&mesh, &options, &whole).expect("nobody interrupts");
         let [steps, _] = whole.counts();
         assert!(steps > 0, "{name} reports no collapses");
         for step in [1, steps.div_ceil(2), steps] {
             let stopped = StopsAfter::new("collapse", step);
-            let result = simplify(&mesh, &options, &stopped);
+            let result = simplify_with(&mesh, &options, &stopped);
             assert!(matches!(result, Err(Error::Interrupted)), "{name}, {step}");
             let [reported, answers] = stopped.counts();
             assert_eq!(reported, step, "{name} goes on after step {step}");
@@ -60,16 +60,13 @@ fn unusable_views_are_refused_before_any_work() {
     let file = dir.path().join("views.json");
     std::fs::write(&file, "{\"schema\": 1, \"views\": []}").expect("writes");
     let with = |views: ViewsName, size: u32| {
-        let mut options = Options::image(Amount::Triangles(20));
-        let MethodOptions::Image(own) = &mut options.method else {
-            unreachable!("image-driven");
-        };
-        (own.views, own.size) = (views, size.into());
-        options
+        Options::image(Target::triangles(20))
+            .views(views)
+            .size(size)
     };
     // With views that can be used the memoryless method goes first.
     let first = StopsAfter::new("collapse", 1);
-    let result = simplify(&mesh, &with(ViewsName::Dodecahedron, 64), &first);
+    let result = simplify_with(&mesh, &with(ViewsName::Dodecahedron, 64), &first);
     assert!(matches!(result, Err(Error::Interrupted)));
     for (views, size, code) in [
         (ViewsName::File(file), 64, 3),
@@ -78,7 +75,7 @@ fn unusable_views_are_refused_before_any_work() {
         (ViewsName::Octahedron(5), 2_048, 4),
     ] {
         let seen = Recorder::default();
-        let refused = simplify(&mesh, &with(views.clone(), size), &seen);
+        let refused = simplify_with(&mesh, &with(views.clone(), size), &seen);
         let error = refused.map(drop).expect_err("unusable");
         assert_eq!(error.exit_code(), code, "{views:?}: {error}");
         assert_eq!(seen.phases(), [""; 0], "{views:?}: work before `{error}`");

@@ -2,10 +2,9 @@
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     collapse::LiveMesh,
     simplify::{
-        Amount, Options, Stop,
+        Options, Stop, Target,
         quadric::{Quadric, QuadricMethod, QuadricOptions, Uncertainty, Weighting},
         simplify,
     },
@@ -136,13 +135,13 @@ fn every_option_simplifies_open_and_closed_meshes() {
             }),
         ] {
             for mesh in [meshes::grid(12, 2), meshes::torus(14, 9, 2)] {
-                let mut options = Options::quadric(Amount::Ratio(0.25));
-                options.method = lodmark::simplify::MethodOptions::Quadric(QuadricOptions {
+                let own = QuadricOptions {
                     weighting,
                     uncertainty,
                     ..QuadricOptions::default()
-                });
-                let outcome = simplify(&mesh, &options, &Silent).expect("valid");
+                };
+                let outcome =
+                    simplify(&mesh, &Options::new(own, Target::ratio(0.25))).expect("valid");
                 assert_eq!(outcome.stop, Stop::TargetReached);
             }
         }
@@ -154,7 +153,7 @@ fn the_outline_of_a_flat_sheet_survives() {
     let mut parts = meshes::grid(10, 0).into_parts();
     parts.positions.iter_mut().for_each(|p| p.z = 0.0);
     let mesh = lodmark::mesh::Mesh::new(parts).expect("valid");
-    let outcome = simplify(&mesh, &Options::quadric(Amount::Triangles(2)), &Silent);
+    let outcome = simplify(&mesh, &Options::quadric(Target::Triangles(2)));
     let left = outcome.expect("valid").mesh;
     let area: f64 = (0..left.triangles().len())
         .map(|t| {

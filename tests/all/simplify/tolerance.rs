@@ -6,7 +6,6 @@
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     bound::tolerance::Source,
     collapse::{
         Changes, EdgeStar, History, LiveMesh, Method, Patch, Proposal, Replay, Review, Rules, Site,
@@ -14,7 +13,7 @@ use lodmark::{
     mesh::{Mesh, canonical, content_sha256, generate},
     num::{Frame, Precision},
     simplify::{
-        Amount, Options, Outcome, Stop, simplify,
+        Options, Outcome, Stop, Target, simplify, simplify_with,
         tolerance::{Distance, ToleranceMethod, ToleranceOptions},
     },
 };
@@ -23,8 +22,8 @@ use proptest::prelude::*;
 use crate::support::{Impatient, distance, faces, lattice, meshes, same_on_all_threads};
 
 fn within(mesh: &Mesh, own: ToleranceOptions) -> Outcome {
-    let options = Options::tolerance(own, Amount::ErrorOnly);
-    simplify(mesh, &options, &Silent).expect("valid")
+    let options = Options::tolerance(own, Target::ErrorOnly);
+    simplify(mesh, &options).expect("valid")
 }
 
 fn share(error: f64) -> ToleranceOptions {
@@ -70,7 +69,7 @@ proptest! {
         }
         let outcome = within(&mesh, own);
         let bound = error * diagonal(&mesh) * (1.0 + 1e-12);
-        let guarantee = outcome.guarantee.expect("a bound");
+        let guarantee = outcome.guarantee().expect("a bound");
         prop_assert!((guarantee.distance - bound).abs() <= 1e-9 * bound);
         let there = farthest(&outcome.mesh, &mesh, 6);
         prop_assert!(there <= bound, "{there} > {bound}");
@@ -136,8 +135,8 @@ proptest! {
         prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), outcome.mesh.clone());
         // A run that stops at more triangles is a start of the longer one.
         let triangles = (mesh.triangles().len() + outcome.mesh.triangles().len()) / 2;
-        let options = Options::tolerance(own, Amount::Triangles(triangles.max(1) as u64));
-        let shorter = simplify(&mesh, &options, &Silent).expect("valid");
+        let options = Options::tolerance(own, Target::Triangles(triangles.max(1) as u64));
+        let shorter = simplify(&mesh, &options).expect("valid");
         walk.seek(triangles.max(1)).expect("fits");
         prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), shorter.mesh);
     }
@@ -199,19 +198,14 @@ fn a_bound_that_is_none_is_refused_with_what_to_try() {
     let mesh = generate::icosphere(1);
     for wrong in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-16] {
         for error in [Distance::OfDiagonal(wrong), Distance::Length(wrong)] {
-            let options = Options::tolerance(ToleranceOptions::new(error), Amount::ErrorOnly);
-            let refused = simplify(&mesh, &options, &Silent).expect_err("no distance");
+            let options = Options::tolerance(ToleranceOptions::new(error), Target::ErrorOnly);
+            let refused = simplify(&mesh, &options).expect_err("no distance");
             assert_eq!(refused.exit_code(), 2, "{refused}");
             assert!(refused.to_string().contains("expected"), "{refused}");
         }
     }
-    let options = Options::tolerance(share(0.1), Amount::Triangles(0));
-    assert_eq!(
-        simplify(&mesh, &options, &Silent)
-            .expect_err("none")
-            .exit_code(),
-        2
-    );
+    let options = Options::tolerance(share(0.1), Target::Triangles(0));
+    assert_eq!(simplify(&mesh, &options).expect_err("none").exit_code(), 2);
 }
 
 #[test]
@@ -221,21 +215,21 @@ fn a_length_is_the_fraction_times_the_diagonal() {
     let length = Distance::Length(0.02 * diagonal(&mesh));
     let by_length = within(&mesh, ToleranceOptions::new(length));
     assert_eq!(by_share.mesh, by_length.mesh);
-    let g = by_length.guarantee.expect("a bound");
+    let g = by_length.guarantee().expect("a bound");
     assert!((g.of_diagonal.expect("a size") - 0.02).abs() < 1e-12 && g.two_sided);
 }
 
 #[test]
 fn a_number_of_triangles_stops_before_the_bound_does() {
     let mesh = canonical(&meshes::torus(20, 15, 4)).mesh;
-    let options = Options::tolerance(share(0.2), Amount::Triangles(300));
-    let outcome = simplify(&mesh, &options, &Silent).expect("valid");
+    let options = Options::tolerance(share(0.2), Target::Triangles(300));
+    let outcome = simplify(&mesh, &options).expect("valid");
     assert_eq!(
         (outcome.mesh.triangles().len(), outcome.stop),
         (300, Stop::TargetReached)
     );
-    let strict = Options::tolerance(share(1e-4), Amount::Triangles(300));
-    let outcome = simplify(&mesh, &strict, &Silent).expect("valid");
+    let strict = Options::tolerance(share(1e-4), Target::Triangles(300));
+    let outcome = simplify(&mesh, &strict).expect("valid");
     let Stop::NoLegalCollapse { refusals } = outcome.stop else {
         panic!("300 triangles within a hundredth of a percent");
     };
@@ -244,9 +238,9 @@ fn a_number_of_triangles_stops_before_the_bound_does() {
         names.contains(&"strays") || names.contains(&"uncovers"),
         "{names:?}"
     );
-    let copy = Options::tolerance(share(0.2), Amount::Triangles(9999));
+    let copy = Options::tolerance(share(0.2), Target::Triangles(9999));
     assert_eq!(
-        simplify(&mesh, &copy, &Silent).expect("valid").stop,
+        simplify(&mesh, &copy).expect("valid").stop,
         Stop::TargetAboveInput
     );
 }
@@ -357,7 +351,7 @@ fn a_mesh_far_from_the_origin_or_of_another_size_is_bounded_as_well() {
 
 #[test]
 fn a_bounded_run_can_be_interrupted() {
-    let options = Options::tolerance(share(0.01), Amount::ErrorOnly);
-    let stopped = simplify(&meshes::torus(20, 15, 1), &options, &Impatient);
+    let options = Options::tolerance(share(0.01), Target::ErrorOnly);
+    let stopped = simplify_with(&meshes::torus(20, 15, 1), &options, &Impatient);
     assert_eq!(stopped.expect_err("interrupted").exit_code(), 130);
 }

@@ -12,27 +12,24 @@ use lodmark::{
     collapse::Replay,
     mesh::{Mesh, canonical, generate},
     num::Precision,
-    simplify::{Amount, Options, Outcome, Stop, simplify, view_bounded::ViewBoundedOptions},
+    simplify::{Options, Outcome, Stop, Target, simplify, view_bounded::ViewBoundedOptions},
 };
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::support::{bounded, expect, folder, meshes, put, same_on_all_threads};
 
-fn run_to(mesh: &Mesh, cell: &ViewCell, degrees: f64, target: Amount) -> Outcome {
+fn run_to(mesh: &Mesh, cell: &ViewCell, degrees: f64, target: Target) -> Outcome {
     let own = ViewBoundedOptions::new(cell.clone(), degrees);
-    simplify(mesh, &Options::view_bounded(own, target), &Silent).expect("valid")
+    simplify(mesh, &Options::view_bounded(own, target)).expect("valid")
 }
 
 fn run(mesh: &Mesh, cell: &ViewCell, degrees: f64) -> Outcome {
-    run_to(mesh, cell, degrees, Amount::ErrorOnly)
+    run_to(mesh, cell, degrees, Target::ErrorOnly)
 }
 
 fn verified(mesh: &Mesh, outcome: &Outcome, cell: &ViewCell, degrees: f64) -> AngleReport {
-    let map = outcome
-        .correspondence
-        .as_ref()
-        .expect("this method keeps account");
+    let map = outcome.correspondence().expect("this method keeps account");
     let mut bytes = Vec::new();
     map.write(mesh, &outcome.mesh, &mut bytes).expect("memory");
     let record = Record::from_bytes(&bytes, "a.corr").expect("just written");
@@ -119,7 +116,7 @@ fn a_mesh_far_from_the_origin_keeps_its_bound_to_the_last_digits() {
             "cell {i}: {report:?}"
         );
         // Looked at again from the offset, where differences are exact, by nothing but the record's corners.
-        let map = outcome.correspondence.expect("this method keeps account");
+        let map = outcome.correspondence().expect("this method keeps account");
         let eyes: Vec<DVec3> = shape
             .corners()
             .unwrap_or_default()
@@ -157,11 +154,7 @@ fn an_angle_of_nothing_collapses_nothing_and_one_of_90_degrees_is_refused() {
     assert!(verified(&mesh, &wide, cell, 89.99).holds);
     for degrees in [-0.1, 90.0, f64::NAN] {
         let own = ViewBoundedOptions::new(cell.clone(), degrees);
-        let refused = simplify(
-            &mesh,
-            &Options::view_bounded(own, Amount::ErrorOnly),
-            &Silent,
-        );
+        let refused = simplify(&mesh, &Options::view_bounded(own, Target::ErrorOnly));
         assert_eq!(refused.expect_err("out of range").exit_code(), 2);
     }
 }
@@ -187,13 +180,13 @@ fn what_a_cell_touches_stays_as_it_is() {
 fn a_target_stops_before_the_bound_and_a_target_above_the_input_copies_it() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     let cell = &cells()[1];
-    let outcome = run_to(&mesh, cell, 5.0, Amount::Triangles(600));
+    let outcome = run_to(&mesh, cell, 5.0, Target::Triangles(600));
     assert_eq!(
         (outcome.mesh.triangles().len(), outcome.stop),
         (600, Stop::TargetReached)
     );
     assert!(verified(&mesh, &outcome, cell, 5.0).holds);
-    let copy = run_to(&mesh, cell, 5.0, Amount::Triangles(9999));
+    let copy = run_to(&mesh, cell, 5.0, Target::Triangles(9999));
     assert_eq!((&copy.mesh, copy.stop), (&mesh, Stop::TargetAboveInput));
     assert!(verified(&mesh, &copy, cell, 0.0).holds);
     let mut replay = Replay::new(&mesh, &outcome.history).expect("its own input");
@@ -256,7 +249,7 @@ proptest! {
         let mesh = canonical(&generate::icosphere(2)).mesh;
         let cell = &cells()[1];
         let outcome = run(&mesh, cell, 4.0);
-        let map = outcome.correspondence.as_ref().expect("this method keeps account");
+        let map = outcome.correspondence().expect("this method keeps account");
         let mut bytes = Vec::new();
         map.write(&mesh, &outcome.mesh, &mut bytes).expect("memory");
         let places = sources(&bytes, mesh.triangles().len());
@@ -282,7 +275,7 @@ fn the_number_of_threads_changes_no_bit() {
     same_on_all_threads(|| {
         let outcome = run(&mesh, &cells()[2], 0.3);
         let mut bytes = outcome.history.to_bytes();
-        let map = outcome.correspondence.expect("this method keeps account");
+        let map = outcome.correspondence().expect("this method keeps account");
         map.write(&mesh, &outcome.mesh, &mut bytes).expect("memory");
         bytes
     });

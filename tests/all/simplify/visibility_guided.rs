@@ -8,7 +8,7 @@ use lodmark::{
     },
     mesh::{Mesh, canonical, generate},
     simplify::{
-        Amount, MethodOptions, Options, Replay,
+        MethodOptions, Options, Replay, Target,
         quadric::{QuadricMethod, QuadricOptions, Weighting},
         simplify, simplify_guided,
         visibility::{VisibilityMethod, VisibilityOptions},
@@ -163,16 +163,15 @@ fn what_nobody_sees_goes_first_and_the_rest_keeps_its_shape() {
 
 /// Down to so many triangles, by six cameras.
 fn options(triangles: u64) -> Options {
-    let mut options = Options::visibility(Amount::Triangles(triangles));
-    options.method = MethodOptions::Visibility(VisibilityOptions {
+    let own = VisibilityOptions {
         measure: visibility::MeasureOptions {
             octahedron: 0,
             size: 48,
             ..visibility::MeasureOptions::default()
         },
         ..VisibilityOptions::default()
-    });
-    options
+    };
+    Options::new(own, Target::triangles(triangles))
 }
 
 #[test]
@@ -214,11 +213,8 @@ fn options_out_of_range_are_refused_by_name() {
             "boundary-weight",
         ),
     ] {
-        let options = Options {
-            method: MethodOptions::Visibility(wrong),
-            ..options(9)
-        };
-        let error = simplify(&mesh, &options, &Silent).expect_err("out of range");
+        let options = Options::new(wrong, Target::triangles(9));
+        let error = simplify(&mesh, &options).expect_err("out of range");
         assert!(matches!(error, Error::Usage(_)), "{error}");
         assert!(error.to_string().contains(said), "{error}");
     }
@@ -231,15 +227,15 @@ fn a_visibility_measured_before_guides_as_one_measured_now() {
     let MethodOptions::Visibility(own) = &options.method else {
         panic!("{options:?}");
     };
-    let direct = simplify(&mesh, &options, &Silent).expect("runs");
+    let direct = simplify(&mesh, &options).expect("runs");
     let before = measure(&mesh, &own.measure, &Silent).expect("measures");
     // Whatever the options say: what was measured is what counts and what is recorded.
-    let asked = Options::visibility(Amount::Triangles(60));
+    let asked = Options::visibility(Target::Triangles(60));
     let guided = simplify_guided(&mesh, &asked, &before, &Silent).expect("runs");
     assert_eq!(guided.mesh, direct.mesh);
     assert_eq!(guided.options, direct.options);
     assert_eq!(guided.history, direct.history);
-    assert_eq!(guided.v_mesh, Some(before.mesh()));
+    assert_eq!(guided.v_mesh(), Some(before.mesh()));
     let text = serde_json::to_string(&guided.options).expect("JSON");
     assert_eq!(
         serde_json::from_str::<Options>(&text).expect("read back"),
@@ -247,7 +243,7 @@ fn a_visibility_measured_before_guides_as_one_measured_now() {
     );
     let other = simplify_guided(
         &mesh,
-        &Options::quadric(Amount::Triangles(60)),
+        &Options::quadric(Target::Triangles(60)),
         &before,
         &Silent,
     );
@@ -260,18 +256,15 @@ fn a_visibility_measured_before_guides_as_one_measured_now() {
 #[test]
 fn every_level_of_a_guided_run_is_the_direct_run_to_it() {
     // What is repaired after the last collapse belongs to the level where the run ended.
-    let options = |triangles| Options {
-        unfold: false,
-        ..options(triangles)
-    };
+    let options = |triangles| options(triangles).keep_folds();
     for kind in [0, 1, 3, 4] {
         let mesh = meshes::any(kind, 7);
-        let outcome = simplify(&mesh, &options(4), &Silent).expect("runs");
+        let outcome = simplify(&mesh, &options(4)).expect("runs");
         let mut replay = Replay::new(&mesh, &outcome.history).expect("the same mesh");
         for share in [0.3, 0.8, 0.5] {
             let triangles = (mesh.triangles().len() as f64 * share) as u64;
             replay.seek(triangles as usize).expect("fits");
-            let direct = simplify(&mesh, &options(triangles), &Silent).expect("runs");
+            let direct = simplify(&mesh, &options(triangles)).expect("runs");
             assert_eq!(
                 replay.live().to_mesh().expect("a mesh"),
                 direct.mesh,

@@ -1,0 +1,213 @@
+//! An image-driven run: memoryless down to its start, then by images, then polished and held against geometry.
+
+use super::{
+    EngineName, HeldOut, ImageDriven, ImageOptions, ImageReport, Limits, Original, PictureScratch,
+    Pictures, PolishCounters, Size, Start, fallback::Contest, polish,
+};
+use crate::{
+    Progress, Result,
+    collapse::{LiveMesh, Observer, Patch, Recorder, Rules, Schedule, Tiling},
+    mesh::Mesh,
+    parallel,
+    raster::{BucketEngine, LayerEngine, Unrender},
+    simplify::{
+        Outcome, Report,
+        memoryless::Memoryless,
+        methods::{ErrorLimit, MethodRun},
+        repair_folds::repair_folds,
+        run::Run,
+    },
+    view::ViewsName,
+};
+
+impl MethodRun for ImageOptions {
+    fn check(&self) -> Result<()> {
+        self.check_ranges()
+    }
+
+    fn rules(&self) -> Rules {
+        // A guard against folds in every step: Gouraud shading cannot see them.
+        Rules::default()
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.preset.schedule()
+    }
+
+    fn error(&self) -> ErrorLimit {
+        ErrorLimit::Pictures
+    }
+
+    fn run(&self, run: Run<'_>) -> Result<Outcome> {
+        let own = Self {
+            size: Size::Pixels(self.size.pixels(run.target)),
+            ..self.clone()
+        };
+        match own.engine {
+            EngineName::Layers => by_images::<LayerEngine>(&own, run),
+            EngineName::Buckets => by_images::<BucketEngine>(&own, run),
+        }
+    }
+}
+
+/// Lindstrom & Turk 2000, in stages; the size of `own` must have been resolved.
+fn by_images<E: Unrender>(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
+    let (mesh, progress) = (run.mesh, run.progress);
+    let limit = run.options.error_rms;
+    let start = own.start.triangles(run.target);
+    // (1) The start of images, and the pictures of the original.
+    let mut original = approach(own, start, &mut run)?;
+    let drive = |live: &_| ImageDriven::<E>::new(original.reference(), live, own.placement, limit);
+    let mut method = drive(&run.live);
+    let mut resolved = Start::Triangles(start as u64);
+    // Where an error limits the run, pre-simplification must not use up more than half of it.
+    let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
+    if too_far && !run.phases.is_empty() {
+        run = Run::new(mesh, &run.options, progress)?;
+        method = drive(&run.live);
+        resolved = Start::Input;
+    }
+    run.options.method = ImageOptions {
+        start: resolved,
+        ..own.clone()
+    }
+    .into();
+    // (2) Collapses by images.
+    let contest = match original.take_held_out() {
+        Some(held_out) => Some(contest(own, held_out, mesh, &run.live)?),
+        None => None,
+    };
+    let sum = method.error().sum() as f64;
+    let deviation = original.deviation(&run.live, own.swept_weight);
+    let price = deviation.map_or(0.0, |d| d.price(sum));
+    let mut method = method.with_swept_price(price).with_glance(own.glance);
+    let before = run.phase_start();
+    let stop = run.phase("image", &mut method, run.least(), before)?;
+    let mut pictures = method.into_pictures();
+    // (3) Moves and flips.
+    let mut report = ImageReport::default();
+    if own.polish.sweeps > 0 {
+        turn_back(&original, &mut pictures, &mut run)?;
+        let counters;
+        (pictures, counters) = polish_by(own, &original, pictures, &mut run)?;
+        report.polish = Some(counters);
+    }
+    report.error_rms = Some(pictures.error().rms());
+    drop((pictures, original));
+    // (4) The better one of images and geometry.
+    let triangles = run.least();
+    let images = run.finish(stop, Report::Image(report))?;
+    match contest {
+        Some(contest) => contest.decide(images, triangles, progress),
+        None => Ok(images),
+    }
+}
+
+/// Collapses by geometry down to `start` triangles, or to the target where that comes first, while the original is
+/// drawn.
+fn approach(own: &ImageOptions, start: usize, run: &mut Run<'_>) -> Result<Original> {
+    let progress = run.progress;
+    let frame = run.live.frame();
+    let framed = run.mesh.enter_frame(frame);
+    // Views that cannot be used are told before any work.
+    let set = own.views(&framed, frame, 0)?;
+    let contested = own.is_contested(run.options.error_rms.is_none());
+    let draw = || Original::draw(framed, frame, set, own, contested, progress);
+    if run.live.triangle_count() <= start {
+        progress.step("draw", 0, 0)?;
+        return draw();
+    }
+    let triangles = start.max(run.least());
+    let mut method = Memoryless::new(&run.live, own.placement);
+    let before = run.collapse_in_tiles(&mut method, Tiling::COARSE, triangles)?;
+    // One queue keeps one core busy.
+    let queue = || run.phase("memoryless", &mut method, triangles, before);
+    let (collapsed, drawn) = parallel::join(queue, draw);
+    collapsed?;
+    drawn
+}
+
+fn contest<'a>(
+    own: &'a ImageOptions,
+    held_out: HeldOut,
+    mesh: &'a Mesh,
+    live: &LiveMesh,
+) -> Result<Contest<'a>> {
+    Ok(Contest {
+        own,
+        held_out,
+        mesh,
+        start: live.to_mesh()?,
+    })
+}
+
+/// Turns faces back that collapses turned over: polishing would only keep them from getting worse. Looks at no
+/// picture, so only where no error of theirs is limited.
+fn turn_back<E: Unrender>(
+    original: &Original,
+    pictures: &mut Pictures<E>,
+    run: &mut Run<'_>,
+) -> Result<()> {
+    let Some(sides) = original.sides().filter(|_| run.options.error_rms.is_none()) else {
+        return Ok(());
+    };
+    let points = |t| run.live.points(t as u32);
+    let is_flipped = |t| points(t).is_some_and(|face| sides.is_flipped(face));
+    if !parallel::any(run.live.triangle_ids() as usize, &is_flipped) {
+        return Ok(());
+    }
+    let mut following = Following {
+        scratch: pictures.lone_scratch(),
+        pictures,
+        recorder: &mut run.recorder,
+    };
+    let rules = run.options.rules;
+    repair_folds(&mut run.live, run.mesh, rules, &mut following, run.progress)
+}
+
+/// Polishes the mesh, with cameras that turn unless the user was told a limit for these views.
+fn polish_by<E: Unrender>(
+    own: &ImageOptions,
+    original: &Original,
+    pictures: Pictures<E>,
+    run: &mut Run<'_>,
+) -> Result<(Pictures<E>, PolishCounters)> {
+    let limited = run.options.error_rms.is_some();
+    let turns = !limited && !matches!(own.views, ViewsName::File(_));
+    let progress: &dyn Progress = run.progress;
+    let mut fresh = |live: &LiveMesh, round: u32| {
+        let turned = turns.then(|| original.turned(own, round, progress));
+        let turned = turned.transpose()?;
+        Ok(turned.map(|reference| Pictures::<E>::new(&reference, live)))
+    };
+    let deviation = original.deviation(&run.live, own.polish.deviation_weight);
+    let limits = Limits {
+        rules: run.options.rules,
+        deviation: deviation.as_ref(),
+        falling: limited,
+        sides: original.sides(),
+    };
+    polish(
+        &mut run.live,
+        pictures,
+        own.polish,
+        limits,
+        &mut fresh,
+        &mut run.recorder,
+        progress,
+    )
+}
+
+/// Lets pictures follow, and a history record, changes that no picture was asked about.
+struct Following<'a, E: Unrender> {
+    pictures: &'a mut Pictures<E>,
+    scratch: PictureScratch<E::Scratch>,
+    recorder: &'a mut Recorder,
+}
+
+impl<E: Unrender> Observer for Following<'_, E> {
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        self.pictures.commit(live, patch, &mut self.scratch);
+        self.recorder.committed(live, patch);
+    }
+}

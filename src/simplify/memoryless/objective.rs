@@ -1,0 +1,203 @@
+//! The sums over the star of an edge that place the new vertex and price it.
+
+use glam::DVec3;
+
+use super::{
+    ConstraintOrder, MemorylessOptions,
+    constraints::{Constraints, Gradient},
+};
+use crate::{
+    collapse::{BoundaryEdge, EdgeStar},
+    geometry::Sym3,
+};
+
+/// The objective of an edge: sums over its star, relative to the midpoint of the edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Objective {
+    origin: DVec3,
+    normal_sum: DVec3,
+    volume_sum: f64,
+    volume: Gradient,
+    boundary: Option<Boundary>,
+    shape: Gradient,
+    weights: [f64; 2],
+    order: ConstraintOrder,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Boundary {
+    edge_sum: DVec3,
+    moment_sum: DVec3,
+    area: Gradient,
+}
+
+/// The place that the constraints determine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The position in frame units; `None` where the constraints determine none.
+    pub position: Option<DVec3>,
+    /// Constraints accepted after boundary (or volume) preservation, after both, after their optimisation, and after
+    /// the shape of triangles.
+    pub accepted: [usize; 4],
+}
+
+impl Objective {
+    /// The sums over a star; O(faces).
+    #[must_use]
+    pub fn of(star: &EdgeStar, options: &MemorylessOptions) -> Self {
+        let origin = star.midpoint();
+        let mut sums = Self {
+            origin,
+            normal_sum: DVec3::ZERO,
+            volume_sum: 0.0,
+            volume: Gradient::default(),
+            boundary: (!star.boundary.is_empty()).then(|| Boundary::of(&star.boundary, origin)),
+            shape: Gradient::default(),
+            weights: [
+                options.volume_weight,
+                (1.0 - options.volume_weight) * star.length2(),
+            ],
+            order: options.lt_order,
+        };
+        for face in &star.faces {
+            let (n, l) = (face.normal, face.normal.dot(face.points[0] - origin));
+            sums.normal_sum += n;
+            sums.volume_sum += l;
+            sums.volume.add_outer(1.0, n, n * -l);
+        }
+        let count = star.spokes.len() as f64;
+        sums.shape.h = Sym3([count, 0.0, 0.0, count, 0.0, count]);
+        for spoke in &star.spokes {
+            sums.shape.c -= spoke.point - origin;
+        }
+        sums
+    }
+
+    /// The sums of a star without boundary edges, relative to the midpoint of its edge, but for the shape of triangles.
+    pub(super) fn without_boundary(
+        normal_sum: DVec3,
+        volume_sum: f64,
+        volume: Gradient,
+        volume_weight: f64,
+    ) -> Self {
+        Self {
+            origin: DVec3::ZERO,
+            normal_sum,
+            volume_sum,
+            volume,
+            boundary: None,
+            shape: Gradient::default(),
+            weights: [volume_weight, 0.0],
+            order: ConstraintOrder::default(),
+        }
+    }
+
+    /// The position that the constraints determine.
+    #[must_use]
+    pub fn place(&self) -> Placement {
+        self.solve::<true>()
+    }
+
+    /// As [`Objective::place`], where sums are far from the limits of doubles; faster.
+    pub(super) fn place_quickly(&self) -> Placement {
+        self.solve::<false>()
+    }
+
+    fn solve<const UNIT: bool>(&self) -> Placement {
+        let mut constraints = Constraints::<UNIT>::default();
+        let mut accepted = [0; 4];
+        let keep_volume = |c: &mut Constraints<UNIT>| c.offer(self.normal_sum, self.volume_sum);
+        let keep_boundary = |c: &mut Constraints<UNIT>| {
+            if let Some(boundary) = &self.boundary {
+                let (e, m) = (boundary.edge_sum, boundary.moment_sum);
+                let mut gradient = Gradient::default();
+                gradient.add_cross(1.0, e, e.cross(m));
+                c.minimise(&gradient);
+            }
+        };
+        if self.order == ConstraintOrder::Cgal {
+            keep_boundary(&mut constraints);
+            accepted[0] = constraints.count;
+            keep_volume(&mut constraints);
+        } else {
+            keep_volume(&mut constraints);
+            accepted[0] = constraints.count;
+            keep_boundary(&mut constraints);
+        }
+        accepted[1] = constraints.count;
+        constraints.minimise(&self.optimum());
+        accepted[2] = constraints.count;
+        constraints.minimise(&self.shape);
+        accepted[3] = constraints.count;
+        Placement {
+            position: constraints.solve().map(|v| v + self.origin),
+            accepted,
+        }
+    }
+
+    /// [`Objective::optimum`] as its matrix and vector, relative to the midpoint of the edge.
+    pub(in super::super) fn quadratic(&self) -> (Sym3, DVec3) {
+        let gradient = self.optimum();
+        (gradient.h, gradient.c)
+    }
+
+    /// Swept volumes and swept boundary areas as one objective. 9 = (1/2) / (1/18), the ratio of their Hessians.
+    fn optimum(&self) -> Gradient {
+        let [volume, area] = self.weights;
+        let mut both = Gradient::default();
+        for (h, v) in both.h.0.iter_mut().zip(self.volume.h.0) {
+            *h = volume * v;
+        }
+        both.c = self.volume.c * volume;
+        if let Some(boundary) = &self.boundary {
+            both.h.add_weighted(9.0 * area, &boundary.area.h);
+            both.c += boundary.area.c * (9.0 * area);
+        }
+        both
+    }
+
+    /// Sum of the squared volumes that the faces sweep when the new vertex lies at `position` (length^6).
+    ///
+    /// Summed face by face: the expanded quadratic form loses the small costs of flat areas to cancellation.
+    #[must_use]
+    pub fn volume_error(&self, star: &EdgeStar, position: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for face in &star.faces {
+            let six_volumes = face.normal.dot(position - face.points[0]);
+            sum += six_volumes * six_volumes;
+        }
+        sum / 36.0
+    }
+
+    /// Sum of the squared areas that the boundary edges sweep (length^4).
+    #[must_use]
+    pub fn boundary_error(&self, star: &EdgeStar, position: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for edge in &star.boundary {
+            let two_areas = (edge.to - edge.from).cross(position - edge.from);
+            sum += two_areas.dot(two_areas);
+        }
+        sum / 4.0
+    }
+
+    /// The edge cost (length^6).
+    #[must_use]
+    pub fn cost(&self, star: &EdgeStar, position: DVec3) -> f64 {
+        self.weights[0] * self.volume_error(star, position)
+            + self.weights[1] * self.boundary_error(star, position)
+    }
+}
+
+impl Boundary {
+    fn of(edges: &[BoundaryEdge], origin: DVec3) -> Self {
+        let mut sums = Self::default();
+        for edge in edges {
+            let (s, t) = (edge.from - origin, edge.to - origin);
+            let (e, m) = (t - s, t.cross(s));
+            sums.edge_sum += e;
+            sums.moment_sum += m;
+            sums.area.add_cross(1.0, e, e.cross(m));
+        }
+        sums
+    }
+}
