@@ -9,7 +9,7 @@ use lodmark::{
 };
 use tempfile::TempDir;
 
-use crate::support::{code, expect, folder, json, lodmark, put, stdout};
+use crate::support::{code, expect, folder, json, lodmark, put, split, stdout};
 
 /// A sphere, a coarser one, and a segment cell beside them.
 fn scene() -> TempDir {
@@ -74,19 +74,9 @@ fn a_bound_names_the_worst_point_its_viewer_and_what_tests_would_have_claimed() 
 #[test]
 fn a_recorded_map_is_bounded_below_the_angle_that_it_was_made_for() {
     let dir = scene();
-    let words = [
-        "simplify",
-        "ref.ply",
-        "out.ply",
-        "--method",
-        "view-bounded",
-        "--cell",
-        "cell.json",
-        "--error-deg",
-        "0.3",
-        "--bound-out",
-        "map.bin",
-    ];
+    let words = split(
+        "simplify ref.ply out.ply --method view-bounded --cell cell.json --error-deg 0.3 --bound-out map.bin",
+    );
     expect(&dir, 0, &words);
     let bound = |low: &'static str| {
         vec![
@@ -141,15 +131,7 @@ fn a_question_without_an_answer_is_refused_with_the_reason() {
         (2, vec!["bound", "ref.ply", "low.ply"], "--cell"),
         (
             2,
-            vec![
-                "bound",
-                "ref.ply",
-                "low.ply",
-                "--cell",
-                "cell.json",
-                "--precision",
-                "0",
-            ],
+            split("bound ref.ply low.ply --cell cell.json --precision 0"),
             "precision",
         ),
         (
@@ -179,76 +161,27 @@ fn a_question_without_an_answer_is_refused_with_the_reason() {
         ),
         (
             2,
-            vec![
-                "bound-region",
-                "o.svg",
-                "--cell",
-                "cell.json",
-                "--point",
-                "0,1",
-                "--error-deg",
-                "1",
-            ],
+            split("bound-region o.svg --cell cell.json --point 0,1 --error-deg 1"),
             "three numbers",
         ),
         (
             2,
-            vec![
-                "bound-region",
-                "o.svg",
-                "--cell",
-                "cell.json",
-                "--point",
-                "0,1,0",
-                "--error-deg",
-                "90",
-            ],
+            split("bound-region o.svg --cell cell.json --point 0,1,0 --error-deg 90"),
             "less than 90",
         ),
         (
             2,
-            vec![
-                "bound-region",
-                "o.step",
-                "--cell",
-                "cell.json",
-                "--point",
-                "0,1,0",
-                "--error-deg",
-                "1",
-            ],
+            split("bound-region o.step --cell cell.json --point 0,1,0 --error-deg 1"),
             ".obj",
         ),
         (
             2,
-            vec![
-                "bound-region",
-                "o.ply",
-                "--cell",
-                "cell.json",
-                "--point",
-                "0,1,0",
-                "--error-deg",
-                "1",
-                "--directions",
-                "9",
-            ],
+            split("bound-region o.ply --cell cell.json --point 0,1,0 --error-deg 1 --directions 9"),
             "figure",
         ),
         (
             2,
-            vec![
-                "bound-region",
-                "o.ply",
-                "--cell",
-                "cell.json",
-                "--point",
-                "0,1,0",
-                "--error-deg",
-                "1",
-                "--reach",
-                "0",
-            ],
+            split("bound-region o.ply --cell cell.json --point 0,1,0 --error-deg 1 --reach 0"),
             "reach",
         ),
     ] {

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 use crate::{
     metric::appearance::shaken,
-    support::{code, expect, folder, lodmark, put, stdout},
+    support::{code, expect, folder, lodmark, put, split, stdout},
 };
 
 /// Runs `compare`, holds it to an exit code, and reads its report.
@@ -179,15 +179,7 @@ fn the_rms_is_that_of_pictures_drawn_by_another_command() {
             expect(&dir, 0, &["render", mesh, to, "--views", &views]);
         }
     };
-    let words = [
-        "a.ply",
-        "b.ply",
-        "--size",
-        "48",
-        "--samples",
-        "1",
-        "--no-distance",
-    ];
+    let words = split("a.ply b.ply --size 48 --samples 1 --no-distance");
     let found = report(&dir, 0, &words);
     for shading in ["flat", "gouraud"] {
         drawn("a.ply", &format!("expected-{shading}"), shading);
@@ -454,22 +446,9 @@ fn differences_are_drawn_in_red_over_the_reference_for_every_view() {
     let mesh = generate::torus(1.0, 0.4, 12, 8);
     put(&dir, "a.ply", &mesh);
     put(&dir, "b.ply", &generate::torus(1.0, 0.4, 8, 6));
-    let words = [
-        "a.ply",
-        "a.ply",
-        "b.ply",
-        "--size",
-        "40",
-        "--samples",
-        "1",
-        "--no-distance",
-        "--red-differences",
-        "red",
-        "--difference-scale",
-        "4",
-        "--views",
-        "octahedron:0",
-    ];
+    let words = split(
+        "a.ply a.ply b.ply --size 40 --samples 1 --no-distance --red-differences red --difference-scale 4 --views octahedron:0",
+    );
     report(&dir, 0, &words);
     for view in 0..6 {
         let path = dir.path().join(format!("red/view-{view:02}.png"));

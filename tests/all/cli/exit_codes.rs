@@ -12,7 +12,7 @@ use lodmark::{
 };
 use tempfile::TempDir;
 
-use crate::support::{code, command, expect, folder, lodmark, put, stderr, stdout};
+use crate::support::{code, command, expect, folder, lodmark, put, split, stderr, stdout};
 
 fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
@@ -224,15 +224,7 @@ fn a_target_above_the_input_copies_it() {
 fn a_target_out_of_reach_is_said_and_with_strict_refused() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(2));
-    let words = [
-        "simplify",
-        "in.ply",
-        "out.ply",
-        "-t",
-        "1",
-        "--method",
-        "memoryless",
-    ];
+    let words = split("simplify in.ply out.ply -t 1 --method memoryless");
     let said = expect(&dir, 0, &words);
     assert!(said.contains("no edge may be collapsed"), "{said}");
     let before = fs::read(dir.path().join("out.ply")).expect("written");
@@ -291,14 +283,7 @@ fn a_failure_to_write_leaves_nothing_behind() {
         let said = expect(&dir, 5, &words);
         assert!(said.contains(out), "{said}");
     }
-    let words = [
-        "compare",
-        "in.ply",
-        "in.ply",
-        "--size",
-        "8",
-        "--no-distance",
-    ];
+    let words = split("compare in.ply in.ply --size 8 --no-distance");
     expect(
         &dir,
         5,
@@ -399,32 +384,12 @@ fn an_interrupted_run_ends_with_130_and_leaves_what_was_there() {
         &generate::grid(96, 96, generate::Height::Waves),
     );
     fs::write(dir.path().join("out.ply"), b"before").expect("writes");
-    let simplify = [
-        "simplify",
-        "in.ply",
-        "out.ply",
-        "-t",
-        "10",
-        "--start-triangles",
-        "none",
-        "--json",
-        "report.json",
-        "--history",
-        "h.bin",
-    ];
-    let compare = [
-        "compare",
-        "in.ply",
-        "in.ply",
-        "--size",
-        "1024",
-        "--samples",
-        "4",
-        "--json",
-        "report.json",
-        "--difference",
-        "d.png",
-    ];
+    let simplify = split(
+        "simplify in.ply out.ply -t 10 --start-triangles none --json report.json --history h.bin",
+    );
+    let compare = split(
+        "compare in.ply in.ply --size 1024 --samples 4 --json report.json --difference d.png",
+    );
     for words in [&simplify[..], &compare] {
         let output = interrupt(&dir, words);
         assert_eq!(code(&output), 130, "{words:?} said {}", stderr(&output));

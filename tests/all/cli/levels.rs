@@ -7,7 +7,7 @@ use lodmark::{io, mesh::generate};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::support::{expect, folder, json, lodmark, put, stdout};
+use crate::support::{expect, folder, json, lodmark, put, split, stdout};
 
 const SMALL: [&str; 8] = [
     "--size",
@@ -88,15 +88,7 @@ fn every_level_is_the_run_to_it_and_is_judged_as_compare_does() {
             io::read(&written).expect("written").mesh,
             io::read(&dir.path().join("one.ply")).expect("written").mesh
         );
-        let words = [
-            "compare",
-            "in.ply",
-            "one.ply",
-            "--size",
-            "48",
-            "--distance-samples",
-            "2000",
-        ];
+        let words = split("compare in.ply one.ply --size 48 --distance-samples 2000");
         expect(
             &dir,
             0,

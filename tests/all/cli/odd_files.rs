@@ -9,7 +9,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{code, expect, folder, lodmark, put, stderr, stdout};
+use crate::support::{code, expect, folder, lodmark, put, split, stderr, stdout};
 
 const TORUS: [&str; 4] = ["simplify", "torus.ply", "out.ply", "--triangles"];
 
@@ -41,14 +41,7 @@ fn a_negative_number_is_out_of_range_and_no_unknown_option() {
             "error-rms is -1",
         ),
         (
-            vec![
-                "replay",
-                "torus.ply",
-                "history",
-                "o.ply",
-                "--triangles",
-                "-1",
-            ],
+            split("replay torus.ply history o.ply --triangles -1"),
             "-1 triangles make no mesh",
         ),
     ] {
@@ -147,15 +140,7 @@ fn a_report_that_cannot_be_written_comes_with_no_result_line() {
             "--json",
             "nowhere/r",
         ][..],
-        &[
-            "simplify",
-            "torus.ply",
-            "out.ply",
-            "-t",
-            "50",
-            "--json",
-            "nowhere/r",
-        ],
+        &split("simplify torus.ply out.ply -t 50 --json nowhere/r"),
     ] {
         expect(&folder, 5, arguments);
     }

@@ -4,7 +4,7 @@ use std::fs;
 
 use lodmark::{io, mesh::generate};
 
-use crate::support::{code, expect, folder, json, lodmark, put, stdout};
+use crate::support::{code, expect, folder, json, lodmark, put, split, stdout};
 
 #[test]
 fn the_report_has_every_key_that_scripts_rely_on() {
@@ -12,18 +12,7 @@ fn the_report_has_every_key_that_scripts_rely_on() {
     put(&dir, "in.ply", &generate::shells(2, 2));
     let output = lodmark(
         &dir,
-        &[
-            "visibility",
-            "in.ply",
-            "--cameras",
-            "18",
-            "--size",
-            "48",
-            "--json",
-            "r.json",
-            "--out",
-            "v.ply",
-        ],
+        &split("visibility in.ply --cameras 18 --size 48 --json r.json --out v.ply"),
     );
     assert_eq!(code(&output), 0);
     let said = stdout(&output);
@@ -70,15 +59,7 @@ fn views_on_several_machines_give_the_file_of_one() {
     expect(
         &dir,
         0,
-        &[
-            "merge-visibility",
-            "b.vis",
-            "ca.vis",
-            "--out",
-            "sum.vis",
-            "--json",
-            "m.json",
-        ],
+        &split("merge-visibility b.vis ca.vis --out sum.vis --json m.json"),
     );
     assert_eq!(json(&dir, "m.json")["complete"], true);
     let bytes = |name: &str| fs::read(dir.path().join(name)).expect("a file");
@@ -86,14 +67,7 @@ fn views_on_several_machines_give_the_file_of_one() {
     expect(
         &dir,
         0,
-        &[
-            "visibility",
-            "in.ply",
-            "--from",
-            "sum.vis",
-            "--json",
-            "from.json",
-        ],
+        &split("visibility in.ply --from sum.vis --json from.json"),
     );
     let [direct, from] = ["direct.json", "from.json"].map(|name| json(&dir, name));
     assert_eq!(direct["v_mesh"], from["v_mesh"]);
@@ -133,16 +107,9 @@ fn no_order_of_triangles_in_the_file_changes_the_answer() {
         expect(
             &dir,
             0,
-            &[
-                "visibility",
-                &input,
-                "--cameras",
-                "6",
-                "--size",
-                "32",
-                "--partial",
-                &out,
-            ],
+            &split(&format!(
+                "visibility {input} --cameras 6 --size 32 --partial {out}"
+            )),
         );
     }
     let bytes = |name: &str| fs::read(dir.path().join(name)).expect("a file");
@@ -236,14 +203,7 @@ fn no_figure_takes_the_name_of_another() {
     let dir = folder();
     put(&dir, "in.ply", &generate::cube());
     fs::write(dir.path().join("cube-0.csv"), "mine").expect("writes");
-    let words = [
-        "--cameras",
-        "6",
-        "--size",
-        "16",
-        "--convergence",
-        "cube-0.5",
-    ];
+    let words = split("--cameras 6 --size 16 --convergence cube-0.5");
     expect(&dir, 0, &[&["visibility", "in.ply"], &words[..]].concat());
     let text = |name: &str| fs::read_to_string(dir.path().join(name)).expect("written");
     assert_eq!(text("cube-0.csv"), "mine");
@@ -272,14 +232,7 @@ fn counts_of_another_version_are_refused() {
         said.contains("other.vis") && said.contains("measure again"),
         "{said}"
     );
-    let words = [
-        "-t",
-        "4",
-        "--method",
-        "visibility",
-        "--visibility",
-        "other.vis",
-    ];
+    let words = split("-t 4 --method visibility --visibility other.vis");
     expect(
         &dir,
         4,

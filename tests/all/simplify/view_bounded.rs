@@ -17,7 +17,7 @@ use lodmark::{
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
-use crate::support::{bounded, expect, folder, meshes, put, same_on_all_threads};
+use crate::support::{bounded, expect, folder, meshes, put, same_on_all_threads, split};
 
 fn run_to(mesh: &Mesh, cell: &ViewCell, degrees: f64, target: Target) -> Outcome {
     let own = ViewBoundedOptions::new(cell.clone(), degrees);
@@ -298,47 +298,18 @@ fn the_command_bounds_verifies_and_refuses() {
             .concat(),
         )
     };
-    let bounded = [
-        "--cell",
-        "c.json",
-        "--error-deg",
-        "0.5",
-        "--bound-out",
-        "b.corr",
-        "--strict",
-    ];
+    let bounded = split("--cell c.json --error-deg 0.5 --bound-out b.corr --strict");
     let said = simplify(&bounded, 0);
     assert!(
         said.contains("breaks the bound or a rule") && said.contains("bound:"),
         "{said}"
     );
-    let verify = [
-        "verify",
-        "in.ply",
-        "out.ply",
-        "--cell",
-        "c.json",
-        "--bound",
-        "b.corr",
-        "--samples",
-        "1000",
-    ];
+    let verify = split("verify in.ply out.ply --cell c.json --bound b.corr --samples 1000");
     expect(&dir, 0, &[&verify[..], &["--error-deg", "0.5"]].concat());
     expect(&dir, 1, &[&verify[..], &["--error-deg", "0.2"]].concat());
     // Half a degree is what one pixel takes up on a screen of two hundred or so.
     simplify(
-        &[
-            "--cell",
-            "c.json",
-            "--error-px",
-            "1",
-            "--screen-height",
-            "114",
-            "--fov",
-            "57",
-            "--json",
-            "r.json",
-        ],
+        &split("--cell c.json --error-px 1 --screen-height 114 --fov 57 --json r.json"),
         0,
     );
     let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
@@ -353,16 +324,7 @@ fn the_command_bounds_verifies_and_refuses() {
         &["--error-deg", "1"],
         &["-t", "100"],
         &["--cell", "c.json", "--error-px", "1"],
-        &[
-            "--cell",
-            "c.json",
-            "--error-deg",
-            "1",
-            "--error-px",
-            "1",
-            "--screen-height",
-            "9",
-        ],
+        &split("--cell c.json --error-deg 1 --error-px 1 --screen-height 9"),
         &["--cell", "c.json", "--error-deg", "90"],
         &["--cell", "c.json", "--error-deg", "1", "--preset", "fast"],
     ] {

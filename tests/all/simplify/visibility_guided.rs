@@ -20,7 +20,7 @@ use proptest::prelude::*;
 
 use crate::{
     simplify::memoryless::{interior, star},
-    support::{Random, expect, folder, meshes, put, same_on_all_threads},
+    support::{Random, expect, folder, meshes, put, same_on_all_threads, split},
 };
 
 fn live(mesh: &Mesh) -> LiveMesh {
@@ -385,16 +385,6 @@ fn the_command_takes_the_visibility_from_a_file_and_refuses_that_of_another_mesh
     assert!(said.contains("counts.bin"), "{said}");
     let both = ["--visibility", "counts.bin", "--cameras", "6"];
     simplify("in.ply", &both, 2);
-    let words = [
-        "simplify",
-        "in.ply",
-        "out.ply",
-        "-t",
-        "9",
-        "--method",
-        "quadric",
-        "--cameras",
-        "6",
-    ];
+    let words = split("simplify in.ply out.ply -t 9 --method quadric --cameras 6");
     assert!(expect(&dir, 2, &words).contains("--cameras"));
 }

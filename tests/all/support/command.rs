@@ -14,6 +14,11 @@ pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
 }
 
+/// The words of a command line.
+pub(crate) fn split(words: &str) -> Vec<&str> {
+    words.split(' ').collect()
+}
+
 /// Runs the command in a folder.
 pub(crate) fn lodmark(folder: &TempDir, arguments: &[&str]) -> Output {
     command(folder, arguments)

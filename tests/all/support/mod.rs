@@ -12,7 +12,9 @@ mod random;
 mod sources;
 mod threads;
 
-pub(crate) use command::{code, command, expect, folder, json, lodmark, put, stderr, stdout};
+pub(crate) use command::{
+    code, command, expect, folder, json, lodmark, put, split, stderr, stdout,
+};
 pub(crate) use folds::faults;
 pub(crate) use geometry::{
     at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,

@@ -16,7 +16,8 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::support::{
-    Random, bounded, code, expect, folder, lodmark, meshes, moved, put, same_on_all_threads, stdout,
+    Random, bounded, code, expect, folder, lodmark, meshes, moved, put, same_on_all_threads, split,
+    stdout,
 };
 
 /// The record that says that every triangle of `low` stands for the same one of `original`.
@@ -280,47 +281,17 @@ fn the_command_names_the_place_where_an_angle_is_too_large() {
     expect(
         &dir,
         3,
-        &[
-            "verify",
-            "low.ply",
-            "low.ply",
-            "--cell",
-            "cell.json",
-            "--error-deg",
-            "1",
-            "--bound",
-            "b.corr",
-        ],
+        &split("verify low.ply low.ply --cell cell.json --error-deg 1 --bound b.corr"),
     );
     expect(
         &dir,
         3,
-        &[
-            "verify",
-            "ref.ply",
-            "ref.ply",
-            "--cell",
-            "cell.json",
-            "--error-deg",
-            "1",
-            "--bound",
-            "b.corr",
-        ],
+        &split("verify ref.ply ref.ply --cell cell.json --error-deg 1 --bound b.corr"),
     );
     expect(
         &dir,
         3,
-        &[
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--cell",
-            "cell.json",
-            "--error-deg",
-            "1",
-            "--bound",
-            "ref.ply",
-        ],
+        &split("verify ref.ply low.ply --cell cell.json --error-deg 1 --bound ref.ply"),
     );
     expect(
         &dir,
@@ -330,28 +301,12 @@ fn the_command_names_the_place_where_an_angle_is_too_large() {
     expect(
         &dir,
         2,
-        &[
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--error",
-            "1",
-            "--cell",
-            "cell.json",
-        ],
+        &split("verify ref.ply low.ply --error 1 --cell cell.json"),
     );
     expect(
         &dir,
         2,
-        &[
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--cell",
-            "cell.json",
-            "--error-deg",
-            "90",
-        ],
+        &split("verify ref.ply low.ply --cell cell.json --error-deg 90"),
     );
 }
 

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use crate::support::{
     Random, bounded, code, distance_by_descent, expect, faces, folder, lodmark, moved, put,
-    same_on_all_threads, stdout,
+    same_on_all_threads, split, stdout,
 };
 
 fn check(reference: &Mesh, low: &Mesh, claim: Claim) -> DistanceReport {
@@ -334,15 +334,7 @@ fn the_command_ends_with_the_code_of_its_verdict() {
     expect(
         &dir,
         2,
-        &[
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--error",
-            "0.1",
-            "--error-abs",
-            "1",
-        ],
+        &split("verify ref.ply low.ply --error 0.1 --error-abs 1"),
     );
     expect(
         &dir,

@@ -10,7 +10,7 @@ use lodmark::{
 };
 
 use super::{before_the_city, blocks, cloud, within};
-use crate::support::Impatient;
+use crate::support::{Impatient, split};
 
 #[test]
 fn a_user_who_wants_to_stop_does_not_wait_for_the_end() {
@@ -35,26 +35,12 @@ fn what_the_command_writes_is_read_back() {
     let run = |arguments: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_lodmark"))
             .current_dir(folder.path())
-            .args([
-                "billboards",
-                "city.obj",
-                "out",
-                "--cell",
-                "cell.json",
-                "--quiet",
-            ])
+            .args(split("billboards city.obj out --cell cell.json --quiet"))
             .args(arguments)
             .output()
             .expect("it starts")
     };
-    let done = run(&[
-        "--error-deg",
-        "0.5",
-        "--texels",
-        "64",
-        "--json",
-        "report.json",
-    ]);
+    let done = run(&split("--error-deg 0.5 --texels 64 --json report.json"));
     let said = String::from_utf8_lossy(&done.stdout).into_owned();
     assert!(
         done.status.success(),
