@@ -24,6 +24,5 @@ pub use pixel_rect::PixelRect;
 pub use sample_key::SampleKey;
 pub use scene::Scene;
 pub use unrender::{
-    Added, BucketEngine, BucketScratch, Change, LayerEngine, LayerScratch, Model, Unrender,
-    ViewSubset,
+    Added, BucketEngine, Change, LayerEngine, Model, Unrender, UnrenderScratch, ViewSubset,
 };

@@ -6,8 +6,10 @@
 mod buckets;
 mod layers;
 
-pub use buckets::{BucketEngine, BucketScratch};
-pub use layers::{LayerEngine, LayerScratch};
+pub use buckets::BucketEngine;
+pub use layers::LayerEngine;
+
+use std::{any::Any, fmt};
 
 use glam::DVec3;
 
@@ -65,33 +67,44 @@ impl ViewSubset {
 /// Differences are sums over pixels of `(y0 - y)^2`, where `y0` and `y` are the sums of the luma of the pixel's
 /// samples, in the reference and in the picture. Sums of integers have no order, so views may be looked at in
 /// parallel.
-pub trait Unrender: Send + Sync + Sized + 'static {
-    /// Buffers of one thread that evaluates changes.
-    type Scratch: Send + Sync + 'static;
+pub trait Unrender: fmt::Debug + Send + Sync {
+    /// Buffers for one thread of several that evaluate at the same time.
+    fn scratch(&self) -> UnrenderScratch;
 
-    /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
-    /// [`luma_sums`](super::luma_sums)).
-    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self;
-
-    /// Room for one thread of several that evaluate at the same time.
-    fn scratch(&self) -> Self::Scratch;
-
-    /// Room for evaluations that nothing else runs beside: views may then be divided among threads.
-    fn lone_scratch(&self) -> Self::Scratch {
-        self.scratch()
-    }
+    /// Buffers for evaluations that nothing else runs beside: views may then be divided among threads.
+    fn lone_scratch(&self) -> UnrenderScratch;
 
     /// Returns what the change would add to the sum of squared differences over `views`, without making it.
-    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut Self::Scratch) -> i64;
+    fn evaluate(
+        &self,
+        change: &Change<'_>,
+        views: ViewSubset,
+        scratch: &mut UnrenderScratch,
+    ) -> i64;
 
     /// Makes the change and gives what it added to the sum of squared differences.
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut Self::Scratch) -> i64;
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64;
 
     /// The luma of every sample of a view.
     fn luma(&self, view: usize) -> Grid<u8>;
 
     /// The key of every sample of a view.
     fn keys(&self, view: usize) -> Grid<SampleKey>;
+}
+
+/// Buffers of one thread that evaluates changes: they belong to the engine that has made them.
+#[derive(Debug)]
+pub struct UnrenderScratch(Box<dyn Any + Send + Sync>);
+
+impl UnrenderScratch {
+    fn new(buffers: impl Any + Send + Sync) -> Self {
+        Self(Box::new(buffers))
+    }
+
+    fn of<T: Any>(&mut self) -> &mut T {
+        let own = self.0.downcast_mut();
+        own.expect("the scratch was made by this engine")
+    }
 }
 
 /// `(y0 - new)^2 - (y0 - old)^2`.

@@ -1,9 +1,12 @@
 //! Equation 8 of Lindstrom & Turk 2000 over all views, as an exact integer.
 
-use super::Reference;
+use super::{EngineName, Reference};
 use crate::{
     num::math::sqrt,
-    raster::{self, Change, Grid, Model, Scene, Unrender, ViewSubset},
+    raster::{
+        self, BucketEngine, Change, Grid, LayerEngine, Model, Scene, Unrender, UnrenderScratch,
+        ViewSubset,
+    },
 };
 
 /// The pictures of the original, those of the current mesh, and the sum of their squared luma differences.
@@ -11,25 +14,31 @@ use crate::{
 /// A pixel with `samples` x `samples` samples is the integer sum of them, and the difference is squared per pixel: the
 /// unit of sums and costs is `(1 / samples^2)^2` squared levels, one squared level where there is one sample.
 /// The sum is never taken from a cost that was computed earlier: every commit adds its own difference.
-#[derive(Clone, Debug)]
-pub struct ImageError<E> {
-    engine: E,
+#[derive(Debug)]
+pub struct ImageError {
+    engine: Box<dyn Unrender>,
     sum: u64,
-    /// Pixels of all views.
+    /// Views, and pixels of all of them.
+    views: usize,
     pixels: u64,
     /// Samples in a pixel.
     samples: u32,
 }
 
-impl<E: Unrender> ImageError<E> {
+impl ImageError {
     /// Draws `current` in the views of the original's pictures and compares them.
     #[must_use]
-    pub fn new(reference: &Reference, current: &Scene) -> Self {
+    pub fn new(reference: &Reference, current: &Scene, engine: EngineName) -> Self {
         let set = reference.set();
-        let engine = E::new(Model::new(current, set), set, reference.sums().to_vec());
+        let (model, sums) = (Model::new(current, set), reference.sums());
+        let engine: Box<dyn Unrender> = match engine {
+            EngineName::Layers => Box::new(LayerEngine::new(model, set, sums)),
+            EngineName::Buckets => Box::new(BucketEngine::new(model, set, sums)),
+        };
         let mut error = Self {
             engine,
             sum: 0,
+            views: set.views.len(),
             pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
             samples: set.samples * set.samples,
         };
@@ -68,26 +77,31 @@ impl<E: Unrender> ImageError<E> {
         sum * sum * self.pixels as f64
     }
 
-    /// The engine that keeps the pictures.
+    /// Number of views.
     #[must_use]
-    pub fn engine(&self) -> &E {
-        &self.engine
+    pub fn views(&self) -> usize {
+        self.views
     }
 
-    /// Buffers for a thread.
+    /// The engine that keeps the pictures.
     #[must_use]
-    pub fn scratch(&self) -> E::Scratch {
-        self.engine.scratch()
+    pub fn engine(&self) -> &dyn Unrender {
+        &*self.engine
     }
 
     /// What the change would add to the sum over the views of a glance; negative where it makes them better.
     #[must_use]
-    pub fn cost(&self, change: &Change<'_>, glance: ViewSubset, scratch: &mut E::Scratch) -> i64 {
+    pub fn cost(
+        &self,
+        change: &Change<'_>,
+        glance: ViewSubset,
+        scratch: &mut UnrenderScratch,
+    ) -> i64 {
         self.engine.evaluate(change, glance, scratch)
     }
 
     /// Makes the change and returns what it added to the sum.
-    pub fn commit(&mut self, change: &Change<'_>, scratch: &mut E::Scratch) -> i64 {
+    pub fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64 {
         let cost = self.engine.commit(change, scratch);
         self.sum = self.sum.wrapping_add_signed(cost);
         cost

@@ -2,7 +2,7 @@
 
 use super::{
     super::memoryless::{self, MemorylessOptions},
-    ImageError, PictureScratch, Pictures, Reference,
+    ImageError, PictureScratch, Pictures,
 };
 use crate::{
     collapse::{
@@ -10,7 +10,7 @@ use crate::{
         Review, Site,
     },
     num::math::sqrt,
-    raster::{Unrender, ViewSubset},
+    raster::ViewSubset,
 };
 
 /// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
@@ -22,8 +22,8 @@ const LEAST_SEEN: usize = 5;
 
 /// The method: pictures of the mesh as it is, and how far they are from those of the original.
 #[derive(Debug)]
-pub struct ImageDriven<E: Unrender> {
-    pictures: Pictures<E>,
+pub struct ImageDriven {
+    pictures: Pictures,
     placement: MemorylessOptions,
     /// Largest sum of squared differences that a collapse may lead to.
     limit: Option<f64>,
@@ -33,35 +33,28 @@ pub struct ImageDriven<E: Unrender> {
     glance: u32,
     /// Views of the set.
     views: usize,
-    scratch: PictureScratch<E::Scratch>,
+    scratch: PictureScratch,
 }
 
 /// Buffers of one thread.
 #[derive(Debug)]
-pub struct ImageScratch<S> {
-    pictures: PictureScratch<S>,
+pub struct ImageScratch {
+    pictures: PictureScratch,
     patch: Patch,
 }
 
-impl<E: Unrender> ImageDriven<E> {
-    /// Prepares the pictures of `live` in the views of the original's pictures (in the same frame). `rms_limit` ends the
-    /// run before the root mean square of the luma differences over all views exceeds it.
+impl ImageDriven {
+    /// A run on the mesh that `pictures` show. `rms_limit` ends it before the root mean square of the luma differences over all views exceeds it.
     #[must_use]
-    pub fn new(
-        reference: &Reference,
-        live: &LiveMesh,
-        placement: MemorylessOptions,
-        rms_limit: Option<f64>,
-    ) -> Self {
-        let pictures = Pictures::new(reference, live);
+    pub fn new(pictures: Pictures, placement: MemorylessOptions, rms_limit: Option<f64>) -> Self {
         Self {
             limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
             scratch: pictures.lone_scratch(),
+            views: pictures.error().views(),
             pictures,
             placement,
             swept_price: 0.0,
             glance: 1,
-            views: reference.set().views.len(),
         }
     }
 
@@ -88,7 +81,7 @@ impl<E: Unrender> ImageDriven<E> {
         &self,
         site: &Site<'_>,
         glance: ViewSubset,
-        scratch: &mut ImageScratch<E::Scratch>,
+        scratch: &mut ImageScratch,
     ) -> Result<Proposal, Refusal> {
         let proposal = memoryless::propose(site, &self.placement)?;
         let ImageScratch { pictures, patch } = scratch;
@@ -113,18 +106,18 @@ impl<E: Unrender> ImageDriven<E> {
 
     /// The pictures and their distance from the original's.
     #[must_use]
-    pub fn error(&self) -> &ImageError<E> {
+    pub fn error(&self) -> &ImageError {
         self.pictures.error()
     }
 
     /// The pictures, which show the mesh as the run left it.
     #[must_use]
-    pub fn into_pictures(self) -> Pictures<E> {
+    pub fn into_pictures(self) -> Pictures {
         self.pictures
     }
 }
 
-impl<E: Unrender> Method for ImageDriven<E> {
+impl Method for ImageDriven {
     fn plan(&self) -> Plan {
         Plan {
             rough_first: self.glance > 1,

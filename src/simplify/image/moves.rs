@@ -7,7 +7,7 @@ use super::{Limits, PictureScratch, Pictures};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, check_folds, check_uv_orientation},
     num::math,
-    raster::{Unrender, ViewSubset},
+    raster::ViewSubset,
 };
 
 /// Farthest that a parabola is followed along one axis, in steps.
@@ -21,10 +21,10 @@ const LOOKS: usize = 2;
 
 /// Buffers of one thread.
 #[derive(Debug)]
-pub(super) struct Search<S> {
+pub(super) struct Search {
     pub(super) star: Star,
     pub(super) patch: Patch,
-    pub(super) pictures: PictureScratch<S>,
+    pub(super) pictures: PictureScratch,
 }
 
 /// What a search found.
@@ -37,8 +37,8 @@ pub(super) struct Found {
     pub(super) evaluations: u64,
 }
 
-impl<S> Search<S> {
-    pub(super) fn new<E: Unrender<Scratch = S>>(pictures: &Pictures<E>) -> Self {
+impl Search {
+    pub(super) fn new(pictures: &Pictures) -> Self {
         Self {
             star: Star::default(),
             patch: Patch::default(),
@@ -65,10 +65,10 @@ impl<S> Search<S> {
     /// Both ways along every axis, and then where the parabolas through the costs along the axes are lowest (at most
     /// [`REACH`] steps away along each): a step of Newton's method with a diagonal matrix. The best of all that, and
     /// where the surface counts, what [`Search::weigh`] finds beside it.
-    pub(super) fn run<E: Unrender<Scratch = S>>(
+    pub(super) fn run(
         &mut self,
         live: &LiveMesh,
-        pictures: &Pictures<E>,
+        pictures: &Pictures,
         limits: Limits<'_>,
         vertex: u32,
         [step, turn]: [f64; 2],
@@ -119,10 +119,10 @@ impl<S> Search<S> {
     /// The best of the position that is best for the pictures, that which [fits](super::Deviation::fit) the surface, the
     /// middle of the two, and the one's place along the tangents with the other's height. Of the last three at most
     /// [`LOOKS`] are drawn, and only where the parabolas and the surface promise something of them.
-    fn weigh<E: Unrender<Scratch = S>>(
+    fn weigh(
         &mut self,
         live: &LiveMesh,
-        pictures: &Pictures<E>,
+        pictures: &Pictures,
         limits: Limits<'_>,
         (image, normal): (Option<(DVec3, i64)>, DVec3),
         expected: &Parabolas,
@@ -193,10 +193,10 @@ impl<S> Search<S> {
     }
 
     /// The cost at a position, where it is allowed; remembers the best.
-    fn try_position<E: Unrender<Scratch = S>>(
+    fn try_position(
         &mut self,
         live: &LiveMesh,
-        pictures: &Pictures<E>,
+        pictures: &Pictures,
         rules: Rules,
         to: DVec3,
         found: &mut Found,

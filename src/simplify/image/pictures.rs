@@ -1,38 +1,38 @@
 //! The pictures that drive a run, and what a patch of the mesh does to them.
 
 use super::{
-    ImageError, Reference,
+    EngineName, ImageError, Reference,
     scene_edit::{ImageChange, Slots},
 };
 use crate::{
     collapse::{LiveMesh, Patch},
-    raster::{Unrender, ViewSubset},
+    raster::{UnrenderScratch, ViewSubset},
     view::Interpolation,
 };
 
 /// Pictures of a mesh as it is, and how far they are from those of the original.
 #[derive(Debug)]
-pub struct Pictures<E> {
-    error: ImageError<E>,
+pub struct Pictures {
+    error: ImageError,
     slots: Slots,
     gouraud: bool,
 }
 
 /// Buffers of one thread.
 #[derive(Debug)]
-pub struct PictureScratch<S> {
-    engine: S,
+pub struct PictureScratch {
+    engine: UnrenderScratch,
     change: ImageChange,
 }
 
-impl<E: Unrender> Pictures<E> {
+impl Pictures {
     /// Draws `live` in the views of the original's pictures (in the same frame), to be compared with them.
     #[must_use]
-    pub fn new(reference: &Reference, live: &LiveMesh) -> Self {
+    pub fn new(reference: &Reference, live: &LiveMesh, engine: EngineName) -> Self {
         let (slots, scene) = Slots::of(live);
         let mut views = reference.set().views.iter();
         Self {
-            error: ImageError::new(reference, &scene),
+            error: ImageError::new(reference, &scene, engine),
             slots,
             gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
         }
@@ -40,22 +40,22 @@ impl<E: Unrender> Pictures<E> {
 
     /// The pictures and their distance from the original's.
     #[must_use]
-    pub fn error(&self) -> &ImageError<E> {
+    pub fn error(&self) -> &ImageError {
         &self.error
     }
 
     /// Buffers for a thread.
     #[must_use]
-    pub fn scratch(&self) -> PictureScratch<E::Scratch> {
+    pub fn scratch(&self) -> PictureScratch {
         PictureScratch {
-            engine: self.error.scratch(),
+            engine: self.error.engine().scratch(),
             change: ImageChange::default(),
         }
     }
 
-    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
+    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`](crate::raster::Unrender::lone_scratch).
     #[must_use]
-    pub fn lone_scratch(&self) -> PictureScratch<E::Scratch> {
+    pub fn lone_scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.error.engine().lone_scratch(),
             change: ImageChange::default(),
@@ -70,7 +70,7 @@ impl<E: Unrender> Pictures<E> {
         live: &LiveMesh,
         patch: &Patch,
         glance: ViewSubset,
-        scratch: &mut PictureScratch<E::Scratch>,
+        scratch: &mut PictureScratch,
     ) -> i64 {
         let PictureScratch { engine, change } = scratch;
         change.fill(&self.slots, live, patch, self.gouraud);
@@ -78,12 +78,7 @@ impl<E: Unrender> Pictures<E> {
     }
 
     /// Follows a patch, before or after `live` has it, and returns what it added to the error.
-    pub fn commit(
-        &mut self,
-        live: &LiveMesh,
-        patch: &Patch,
-        scratch: &mut PictureScratch<E::Scratch>,
-    ) -> i64 {
+    pub fn commit(&mut self, live: &LiveMesh, patch: &Patch, scratch: &mut PictureScratch) -> i64 {
         let PictureScratch { engine, change } = scratch;
         change.fill(&self.slots, live, patch, self.gouraud);
         self.error.commit(&change.as_change(), engine)

@@ -24,7 +24,7 @@ use crate::{
     collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, check_folds, flip},
     metric::Sides,
     parallel,
-    raster::{Unrender, ViewSubset},
+    raster::ViewSubset,
 };
 
 /// How much polishing.
@@ -126,21 +126,21 @@ struct Stand {
 }
 
 /// Makes pictures of a mesh with cameras turned for a round (1, 2, ...); none where the cameras are to stay.
-pub type Turn<'a, E> = dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures<E>>> + 'a;
+pub type Turn<'a> = dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures>> + 'a;
 
 /// Polishes `live`, which `pictures` show, with cameras that `fresh` turns.
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`], and what `fresh` fails with; the mesh is then somewhere in between.
-pub fn polish<E: Unrender>(
+pub fn polish(
     live: &mut LiveMesh,
-    pictures: Pictures<E>,
+    pictures: Pictures,
     options: Polish,
     limits: Limits<'_>,
-    fresh: &mut Turn<'_, E>,
+    fresh: &mut Turn<'_>,
     observer: &mut dyn Observer,
     progress: &dyn Progress,
-) -> Result<(Pictures<E>, PolishCounters)> {
+) -> Result<(Pictures, PolishCounters)> {
     let stand = Stand {
         step: FIRST_STEP,
         settled: false,
@@ -189,27 +189,27 @@ pub fn polish<E: Unrender>(
     Ok((pictures, counters))
 }
 
-struct Polisher<'a, E: Unrender> {
+struct Polisher<'a> {
     live: &'a mut LiveMesh,
-    pictures: Pictures<E>,
+    pictures: Pictures,
     limits: Limits<'a>,
     progress: &'a dyn Progress,
     /// By vertex id.
     stands: Vec<Stand>,
     /// By edge id: when its flip was last found to be no good.
     tried: Vec<u32>,
-    own: Search<E::Scratch>,
+    own: Search,
     /// Buffers of the threads; which thread gets which changes nothing.
-    pool: Mutex<Vec<Search<E::Scratch>>>,
+    pool: Mutex<Vec<Search>>,
     changes: Changes,
     clock: u32,
     batch: u32,
     counters: PolishCounters,
 }
 
-impl<E: Unrender> Polisher<'_, E> {
+impl Polisher<'_> {
     /// Other pictures of the same mesh.
-    fn look_through(&mut self, pictures: Pictures<E>) {
+    fn look_through(&mut self, pictures: Pictures) {
         self.pictures = pictures;
         self.own = Search::new(&self.pictures);
         self.pool = Mutex::new(Vec::new());
@@ -265,7 +265,7 @@ impl<E: Unrender> Polisher<'_, E> {
     fn in_parallel<T: Sync, R: Send>(
         &self,
         items: &[T],
-        work: impl Fn(&Self, &mut Search<E::Scratch>, &T) -> R + Sync,
+        work: impl Fn(&Self, &mut Search, &T) -> R + Sync,
     ) -> Vec<R> {
         parallel::map_slice(items, |item| {
             let taken = self.pool.lock().ok().and_then(|mut pool| pool.pop());

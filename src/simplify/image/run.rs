@@ -1,15 +1,14 @@
 //! An image-driven run: memoryless down to its start, then by images, then polished and held against geometry.
 
 use super::{
-    EngineName, HeldOut, ImageDriven, ImageOptions, ImageReport, Limits, Original, PictureScratch,
-    Pictures, PolishCounters, Size, Start, fallback::Contest, polish,
+    HeldOut, ImageDriven, ImageOptions, ImageReport, Limits, Original, PictureScratch, Pictures,
+    PolishCounters, Size, Start, fallback::Contest, polish,
 };
 use crate::{
     Progress, Result,
     collapse::{LiveMesh, Observer, Patch, Recorder, Rules, Schedule, Tiling},
     mesh::Mesh,
     parallel,
-    raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{
         Outcome, Report,
         memoryless::Memoryless,
@@ -43,21 +42,21 @@ impl MethodRun for ImageOptions {
             size: Size::Pixels(self.size.pixels(run.target)),
             ..self.clone()
         };
-        match own.engine {
-            EngineName::Layers => by_images::<LayerEngine>(&own, run),
-            EngineName::Buckets => by_images::<BucketEngine>(&own, run),
-        }
+        by_images(&own, run)
     }
 }
 
 /// Lindstrom & Turk 2000, in stages; the size of `own` must have been resolved.
-fn by_images<E: Unrender>(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
+fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     let (mesh, progress) = (run.mesh, run.progress);
     let limit = run.options.error_rms;
     let start = own.start.triangles(run.target);
     // (1) The start of images, and the pictures of the original.
     let mut original = approach(own, start, &mut run)?;
-    let drive = |live: &_| ImageDriven::<E>::new(original.reference(), live, own.placement, limit);
+    let drive = |live: &_| {
+        let pictures = Pictures::new(original.reference(), live, own.engine);
+        ImageDriven::new(pictures, own.placement, limit)
+    };
     let mut method = drive(&run.live);
     let mut resolved = Start::Triangles(start as u64);
     // Where an error limits the run, pre-simplification must not use up more than half of it.
@@ -143,11 +142,7 @@ fn contest<'a>(
 
 /// Turns faces back that collapses turned over: polishing would only keep them from getting worse. Looks at no
 /// picture, so only where no error of theirs is limited.
-fn turn_back<E: Unrender>(
-    original: &Original,
-    pictures: &mut Pictures<E>,
-    run: &mut Run<'_>,
-) -> Result<()> {
+fn turn_back(original: &Original, pictures: &mut Pictures, run: &mut Run<'_>) -> Result<()> {
     let Some(sides) = original.sides().filter(|_| run.options.error_rms.is_none()) else {
         return Ok(());
     };
@@ -166,19 +161,19 @@ fn turn_back<E: Unrender>(
 }
 
 /// Polishes the mesh, with cameras that turn unless the user was told a limit for these views.
-fn polish_by<E: Unrender>(
+fn polish_by(
     own: &ImageOptions,
     original: &Original,
-    pictures: Pictures<E>,
+    pictures: Pictures,
     run: &mut Run<'_>,
-) -> Result<(Pictures<E>, PolishCounters)> {
+) -> Result<(Pictures, PolishCounters)> {
     let limited = run.options.error_rms.is_some();
     let turns = !limited && !matches!(own.views, ViewsName::File(_));
     let progress: &dyn Progress = run.progress;
     let mut fresh = |live: &LiveMesh, round: u32| {
         let turned = turns.then(|| original.turned(own, round, progress));
         let turned = turned.transpose()?;
-        Ok(turned.map(|reference| Pictures::<E>::new(&reference, live)))
+        Ok(turned.map(|reference| Pictures::new(&reference, live, own.engine)))
     };
     let deviation = original.deviation(&run.live, own.polish.deviation_weight);
     let limits = Limits {
@@ -199,13 +194,13 @@ fn polish_by<E: Unrender>(
 }
 
 /// Lets pictures follow, and a history record, changes that no picture was asked about.
-struct Following<'a, E: Unrender> {
-    pictures: &'a mut Pictures<E>,
-    scratch: PictureScratch<E::Scratch>,
+struct Following<'a> {
+    pictures: &'a mut Pictures,
+    scratch: PictureScratch,
     recorder: &'a mut Recorder,
 }
 
-impl<E: Unrender> Observer for Following<'_, E> {
+impl Observer for Following<'_> {
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
         self.pictures.commit(live, patch, &mut self.scratch);
         self.recorder.committed(live, patch);

@@ -266,8 +266,8 @@ proptest! {
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
         let reference: Vec<Grid<u16>> =
             set.views.iter().map(|v| raster::luma_sums(&start.scene(), v, &set)).collect();
-        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
-        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, reference.clone());
+        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, &reference);
+        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, &reference);
         let mut scratches = (buckets.scratch(), layers.scratch());
         let mut now = start;
         let mut error = 0_i64;
@@ -326,8 +326,8 @@ proptest! {
         }).collect();
         let some: i64 = costs.iter().step_by(every.max(1) as usize).sum();
         let model = || Model::new(&start.scene(), &set);
-        let buckets = BucketEngine::new(model(), &set, before.clone());
-        let layers = LayerEngine::new(model(), &set, before.clone());
+        let buckets = BucketEngine::new(model(), &set, &before);
+        let layers = LayerEngine::new(model(), &set, &before);
         let mut scratches = (buckets.scratch(), layers.scratch(), layers.lone_scratch());
         // After a look at many pixels a lone one is shared among threads.
         for (views, expected) in [

@@ -9,10 +9,9 @@ use lodmark::{
     geometry::{TriangleTree, closest_point},
     mesh::{Mesh, generate},
     num::math,
-    raster::LayerEngine,
     simplify::{
         MethodOptions, Options, Target,
-        image::{Deviation, Limits, Pictures, Polish, polish},
+        image::{Deviation, EngineName, Limits, Pictures, Polish, polish},
         simplify,
     },
     view::{Sphere, ViewSet, frame_of},
@@ -99,7 +98,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
         let mut distances = Vec::new();
         for (weight, falling) in [(0.0, false), (1.0, false), (20.0, false), (20.0, true)] {
             let mut live = LiveMesh::new(&worse, frame);
-            let pictures = Pictures::<LayerEngine>::new(&reference(&original, set), &live);
+            let pictures = Pictures::new(&reference(&original, set), &live, EngineName::Layers);
             let bound = Deviation::new(&surface, &live, weight);
             let total = deviation(&all, &worse.enter_frame(frame));
             let mut judge = Judge {

@@ -9,10 +9,10 @@ use lodmark::{
     },
     mesh::{Mesh, canonical, generate},
     num::math,
-    raster::{self, BucketEngine, Scene},
+    raster::{self, Scene},
     simplify::{
         self, MethodOptions, Options, Stop, Target,
-        image::{ImageDriven, Preset, Reference, Size, Start},
+        image::{EngineName, ImageDriven, Pictures, Preset, Reference, Size, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -25,7 +25,7 @@ use crate::support::same_on_all_threads;
 
 /// The method, remembering what it was about to commit.
 struct Watched {
-    inner: ImageDriven<BucketEngine>,
+    inner: ImageDriven,
     last: Option<Proposal>,
 }
 
@@ -59,7 +59,8 @@ impl Method for Watched {
 
 fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watched {
     let reference = reference(original, set);
-    let inner = ImageDriven::new(&reference, live, MemorylessOptions::default(), None);
+    let pictures = Pictures::new(&reference, live, EngineName::Buckets);
+    let inner = ImageDriven::new(pictures, MemorylessOptions::default(), None);
     Watched {
         inner: inner.with_swept_price(price),
         last: None,
@@ -243,7 +244,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
-                        fresh.tones == raster::Unrender::luma(pictures.engine(), i),
+                        fresh.tones == pictures.engine().luma(i),
                         "{mesh_name}, {view_name}"
                     );
                 }

@@ -8,12 +8,11 @@ use lodmark::{
         check_folds, flip,
     },
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
-    raster::{BucketEngine, LayerEngine, Unrender},
     simplify::{
         MethodOptions, Options, Outcome, Target,
         image::{
-            DrivingShading, ImageOptions, Limits, Pictures, Polish, PolishCounters, Preset, Start,
-            polish,
+            DrivingShading, EngineName, ImageOptions, Limits, Pictures, Polish, PolishCounters,
+            Preset, Start, polish,
         },
         simplify, simplify_with,
     },
@@ -35,16 +34,17 @@ const THREE: Polish = Polish {
 };
 
 /// Polishes a copy of `mesh` that was made worse, so that there is something to do.
-fn polished<E: Unrender>(
+fn polished(
+    engine: EngineName,
     mesh: &Mesh,
     worse: &Mesh,
     set: &ViewSet,
     options: Polish,
     observer: &mut dyn Observer,
-) -> (LiveMesh, u64, Pictures<E>, PolishCounters) {
+) -> (LiveMesh, u64, Pictures, PolishCounters) {
     let frame = frame_of(mesh);
     let mut live = LiveMesh::new(worse, frame);
-    let pictures = Pictures::<E>::new(&reference(&mesh.enter_frame(frame), set), &live);
+    let pictures = Pictures::new(&reference(&mesh.enter_frame(frame), set), &live, engine);
     let before = pictures.error().sum();
     let (pictures, counters) = polish(
         &mut live,
@@ -106,8 +106,14 @@ fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
                 changes: 0,
             };
             let options = Polish { sweeps: 1, ..THREE };
-            let (_, before, pictures, counters) =
-                polished::<LayerEngine>(&mesh, &worse, &set, options, &mut falling);
+            let (_, before, pictures, counters) = polished(
+                EngineName::Layers,
+                &mesh,
+                &worse,
+                &set,
+                options,
+                &mut falling,
+            );
             assert!(pictures.error().sum() <= before, "{name}, {views}");
             if falling.changes > 0 {
                 assert_eq!(
@@ -134,8 +140,10 @@ fn both_engines_polish_alike() {
         let worse = pushed(&mesh, 0.05, 3);
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (views, set) in view_sets(&sphere).into_iter().take(3) {
-            let (a, _, _, layers) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
-            let (b, _, _, buckets) = polished::<BucketEngine>(&mesh, &worse, &set, THREE, &mut ());
+            let (a, _, _, layers) =
+                polished(EngineName::Layers, &mesh, &worse, &set, THREE, &mut ());
+            let (b, _, _, buckets) =
+                polished(EngineName::Buckets, &mesh, &worse, &set, THREE, &mut ());
             assert_eq!(
                 a.to_mesh().expect("a mesh"),
                 b.to_mesh().expect("a mesh"),
@@ -248,7 +256,7 @@ proptest! {
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         let set = view_sets(&sphere).swap_remove(seed as usize % 2).1;
         let worse = pushed(&mesh, 0.1, seed);
-        let (live, ..) = polished::<LayerEngine>(&mesh, &worse, &set, THREE, &mut ());
+        let (live, ..) = polished(EngineName::Layers, &mesh, &worse, &set, THREE, &mut ());
         let now = live.to_mesh().expect("valid");
         let (before, after) = (Edges::of(&worse), Edges::of(&now));
         prop_assert_eq!(before.boundary_count(), after.boundary_count());
@@ -302,7 +310,7 @@ fn a_locked_vertex_stays_where_it_is() {
         live.set_locked(v, true);
     }
     let before = live.positions().to_vec();
-    let pictures = Pictures::<LayerEngine>::new(&reference(&original, &set), &live);
+    let pictures = Pictures::new(&reference(&original, &set), &live, EngineName::Layers);
     let (_, counters) = polish(
         &mut live,
         pictures,

@@ -11,7 +11,7 @@ mod view;
 use glam::DVec3;
 
 use self::view::{BucketView, PartScratch};
-use super::{Change, Model, Unrender, ViewSubset};
+use super::{Change, Model, Unrender, UnrenderScratch, ViewSubset};
 use crate::{
     parallel,
     raster::{FaceGeometry, Grid, SampleKey},
@@ -27,9 +27,9 @@ pub struct BucketEngine {
 
 /// Buffers of an evaluation, reused.
 #[derive(Clone, Debug)]
-pub struct BucketScratch {
+struct BucketScratch {
     geometry: Vec<(FaceGeometry, [DVec3; 3])>,
-    /// One for every part of the views that is looked at on its own.
+    /// One for every part of the views that has a thread of its own.
     parts: Vec<PartScratch>,
 }
 
@@ -37,6 +37,24 @@ pub struct BucketScratch {
 const PARTS: usize = 4;
 
 impl BucketEngine {
+    /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
+    /// [`luma_sums`](crate::raster::luma_sums)).
+    #[must_use]
+    pub fn new(model: Model, set: &ViewSet, reference: &[Grid<u16>]) -> Self {
+        let views = set.views.iter().zip(reference).collect();
+        let views = parallel::map_vec(views, |(view, reference)| {
+            BucketView::new(&model, view, set, reference.clone())
+        });
+        Self { model, views }
+    }
+
+    fn buffers(&self, parts: usize) -> UnrenderScratch {
+        UnrenderScratch::new(BucketScratch {
+            geometry: Vec::new(),
+            parts: vec![PartScratch::new(self.model.corners.len()); parts],
+        })
+    }
+
     fn begin(&self, change: &Change<'_>, scratch: &mut BucketScratch) {
         scratch.geometry.clear();
         let geometry = change
@@ -48,33 +66,21 @@ impl BucketEngine {
 }
 
 impl Unrender for BucketEngine {
-    type Scratch = BucketScratch;
-
-    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
-        let views = set.views.iter().zip(reference).collect();
-        let views = parallel::map_vec(views, |(view, reference)| {
-            BucketView::new(&model, view, set, reference)
-        });
-        Self { model, views }
+    fn scratch(&self) -> UnrenderScratch {
+        self.buffers(1)
     }
 
-    fn scratch(&self) -> BucketScratch {
-        BucketScratch {
-            geometry: Vec::new(),
-            parts: vec![PartScratch::new(self.model.corners.len())],
-        }
+    fn lone_scratch(&self) -> UnrenderScratch {
+        self.buffers(parallel::threads().min(PARTS).min(self.views.len()).max(1))
     }
 
-    fn lone_scratch(&self) -> BucketScratch {
-        let parts = parallel::threads().min(PARTS).min(self.views.len()).max(1);
-        let part = PartScratch::new(self.model.corners.len());
-        BucketScratch {
-            geometry: Vec::new(),
-            parts: vec![part; parts],
-        }
-    }
-
-    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut BucketScratch) -> i64 {
+    fn evaluate(
+        &self,
+        change: &Change<'_>,
+        views: ViewSubset,
+        scratch: &mut UnrenderScratch,
+    ) -> i64 {
+        let scratch: &mut BucketScratch = scratch.of();
         self.begin(change, scratch);
         let geometry = &scratch.geometry;
         let chosen = self.views.iter().enumerate();
@@ -86,7 +92,8 @@ impl Unrender for BucketEngine {
         })
     }
 
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut BucketScratch) -> i64 {
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64 {
+        let scratch: &mut BucketScratch = scratch.of();
         self.begin(change, scratch);
         let (model, geometry) = (&self.model, &scratch.geometry);
         let views: Vec<&mut BucketView> = self.views.iter_mut().collect();

@@ -21,7 +21,7 @@ use self::{
     view::{LayerView, ProbeContext},
     view_delta::ViewDelta,
 };
-use super::{Change, Model, Unrender, ViewSubset};
+use super::{Change, Model, Unrender, UnrenderScratch, ViewSubset};
 use crate::{
     parallel,
     raster::{Grid, SampleKey},
@@ -49,7 +49,7 @@ pub struct LayerEngine {
 
 /// Buffers of an evaluation, reused.
 #[derive(Clone, Debug)]
-pub struct LayerScratch {
+struct LayerScratch {
     changes: ChangeSet,
     parts: Vec<PartScratch>,
     /// Nothing else runs beside: parts may be given to other threads.
@@ -255,24 +255,10 @@ fn each(mut lanes: u64) -> impl Iterator<Item = usize> {
 }
 
 impl LayerEngine {
-    fn view(&self, index: usize) -> &LayerView {
-        let mut parts = self.parts.iter();
-        let view = parts.find_map(|part| {
-            let lane = part.indices.iter().position(|&i| i == index)?;
-            Some(&part.views[lane])
-        });
-        view.expect("a view of the set")
-    }
-
-    fn plane<T: Copy>(&self, values: Vec<T>) -> Grid<T> {
-        Grid::new(self.size[0], self.size[1], values).expect("a value for every sample")
-    }
-}
-
-impl Unrender for LayerEngine {
-    type Scratch = LayerScratch;
-
-    fn new(model: Model, set: &ViewSet, reference: Vec<Grid<u16>>) -> Self {
+    /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
+    /// [`luma_sums`](crate::raster::luma_sums)).
+    #[must_use]
+    pub fn new(model: Model, set: &ViewSet, reference: &[Grid<u16>]) -> Self {
         let colored = !model.colors.is_empty();
         let count = set.views.len();
         let threads = parallel::threads().min(PARTS);
@@ -299,7 +285,7 @@ impl Unrender for LayerEngine {
         }
     }
 
-    fn scratch(&self) -> LayerScratch {
+    fn buffers(&self, lone: bool) -> UnrenderScratch {
         let part = |part: &Part| PartScratch {
             moved: Projected::new(
                 part.views.len(),
@@ -310,21 +296,43 @@ impl Unrender for LayerEngine {
             all: ScreenBoxes::default(),
             delta: ViewDelta::default(),
         };
-        LayerScratch {
+        UnrenderScratch::new(LayerScratch {
             changes: ChangeSet::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
-            lone: false,
-        }
+            lone,
+        })
     }
 
-    fn lone_scratch(&self) -> LayerScratch {
-        LayerScratch {
-            lone: true,
-            ..self.scratch()
-        }
+    fn view(&self, index: usize) -> &LayerView {
+        let mut parts = self.parts.iter();
+        let view = parts.find_map(|part| {
+            let lane = part.indices.iter().position(|&i| i == index)?;
+            Some(&part.views[lane])
+        });
+        view.expect("a view of the set")
     }
 
-    fn evaluate(&self, change: &Change<'_>, views: ViewSubset, scratch: &mut LayerScratch) -> i64 {
+    fn plane<T: Copy>(&self, values: Vec<T>) -> Grid<T> {
+        Grid::new(self.size[0], self.size[1], values).expect("a value for every sample")
+    }
+}
+
+impl Unrender for LayerEngine {
+    fn scratch(&self) -> UnrenderScratch {
+        self.buffers(false)
+    }
+
+    fn lone_scratch(&self) -> UnrenderScratch {
+        self.buffers(true)
+    }
+
+    fn evaluate(
+        &self,
+        change: &Change<'_>,
+        views: ViewSubset,
+        scratch: &mut UnrenderScratch,
+    ) -> i64 {
+        let scratch: &mut LayerScratch = scratch.of();
         scratch.changes.fill(&self.model, change, self.flat);
         let (model, changes) = (&self.model, &scratch.changes);
         let work = |i: usize, scratch: &mut PartScratch| {
@@ -342,7 +350,8 @@ impl Unrender for LayerEngine {
         }
     }
 
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut LayerScratch) -> i64 {
+    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64 {
+        let scratch: &mut LayerScratch = scratch.of();
         scratch.changes.fill(&self.model, change, self.flat);
         let (model, changes) = (&self.model, &scratch.changes);
         let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
