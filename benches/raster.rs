@@ -17,7 +17,7 @@ use lodmark::{
 
 fn views(mesh: &Mesh, size: u32) -> (Scene, ViewSet) {
     let mesh = mesh.enter_frame(frame_of(mesh));
-    let sphere = Sphere::of_mesh(&mesh).expect("triangles");
+    let sphere = Sphere::of_mesh(mesh.in_frame_units()).expect("triangles");
     let set = ViewSet {
         width: size,
         height: size,

@@ -1,4 +1,4 @@
-//! Which planes a face in space may be projected on, along the plane's normal.
+//! The interval of planes that a face in space may be projected on, along the plane's normal.
 //!
 //! Exact where the cell is a half-space or a plane: there the extent of a point grows with its height above the
 //! boundary and with nothing else (Eisemann & Décoret 2007, section 5), so that the limit is linear and the corners of
@@ -129,7 +129,7 @@ fn beside_plane(
     on_either_side(point, normal, corners, limit)
 }
 
-/// What a limit that is linear on each side of a plane leaves of a face: its corners and where its edges cross.
+/// The points of a face at which a limit that is linear on each side of a plane can be least: corners and crossings.
 fn on_either_side(
     point: DVec3,
     normal: DVec3,

@@ -1,4 +1,4 @@
-//! What usual tests would have claimed about a simplification, to be held against the bound of [`surface`](super::surface).
+//! Claims that usual tests make about a simplification, to be held against the bound of [`surface`](super::surface).
 //!
 //! Eisemann & Décoret 2007, sections 2 and 5: tests of vertices or of edges bound nothing, because a point inside a face
 //! can be nearer to the viewer than all its vertices (Figure 16), or leave its validity region while they stay in theirs
@@ -23,7 +23,7 @@ pub struct Claims {
     pub edges: f64,
 }
 
-/// What the tests would have claimed about `low` as a simplification of `reference`, in the same units.
+/// Computes the claims of the tests about `low` as a simplification of `reference`, in the same units.
 ///
 /// A vertex is gone where no vertex of `low` has its position to the last bit. Cost: that of an exact error for each
 /// vertex and edge.

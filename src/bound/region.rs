@@ -24,7 +24,7 @@ pub const PROFILE_LIMIT: u32 = 100_000;
 /// Finest sphere of directions: 20 * 4^7 triangles.
 pub const SHELL_LIMIT: u32 = 7;
 
-/// How long an unbounded direction is drawn where none is bounded, in distances of the point from the cell.
+/// Length at which an unbounded direction is drawn where none is bounded, in distances of the point from the cell.
 const UNBOUNDED: f64 = 2.0;
 
 /// Part of a validity region in a plane.

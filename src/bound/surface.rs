@@ -24,7 +24,7 @@ use crate::{
 /// coordinates.
 const ROUNDING: [f64; 2] = [1e-9, 1e-14];
 
-/// How often a triangle is cut in four at most; where the surface touches the cell no depth would be enough.
+/// Most times that a triangle is cut in four; where the surface touches the cell no depth would be enough.
 const DEPTH: u8 = 20;
 
 /// Triangles judged by one task between two reports.
@@ -35,7 +35,7 @@ const BATCH: usize = 16_384;
 pub struct Pair {
     /// Corners on the original.
     pub from: [DVec3; 3],
-    /// What stands for them.
+    /// The corners that replace them.
     pub to: [DVec3; 3],
     /// The triangle of the original that this is a part of.
     pub triangle: u32,
@@ -69,7 +69,7 @@ impl Pair {
     }
 }
 
-/// Where the replacement of a surface lies.
+/// A replacement of a surface.
 pub trait Replacement: Sync {
     /// A triangle inside the replacement that may stand for `from`, corner for corner; `None` where the map is given
     /// and not a matter of choice. Any triangle inside is legal, a near one is wanted: the nearest for the centroid.
@@ -86,7 +86,7 @@ impl Replacement for Given {
     }
 }
 
-/// What is measured between a point and its replacement.
+/// A measure of the error between a point and its replacement.
 #[derive(Clone, Copy, Debug)]
 pub enum Measure<'a> {
     /// The largest angle under which a viewer in the cell sees both, in radians.
@@ -95,7 +95,7 @@ pub enum Measure<'a> {
     Distance,
 }
 
-/// How far the search goes.
+/// Limits of the search: precision and pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     /// The bound may exceed what is attained by this share of it, above 0.
@@ -129,7 +129,7 @@ pub struct Worst {
     pub triangle: u32,
 }
 
-/// How wrong a replacement is.
+/// The error of a replacement: a bound, and the largest one attained.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceBound {
     /// No point of the surface has more: radians, at most pi, or a length. 0 for an empty surface.

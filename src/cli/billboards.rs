@@ -32,10 +32,10 @@ pub(super) struct BillboardsArgs {
     #[arg(long, value_enum, default_value = "z")]
     up: Up,
     /// Directions of planes over half a turn, 1 to 4096; the scene is projected on them across and slanted
-    #[arg(long, value_name = "N", default_value_t = billboards::Options::DIRECTIONS)]
+    #[arg(long, value_name = "N", default_value_t = billboards::BillboardOptions::DIRECTIONS)]
     directions: u32,
     /// Most texels in a row or column of a texture, 1 to 4096
-    #[arg(long, value_name = "N", default_value_t = billboards::Options::TEXELS)]
+    #[arg(long, value_name = "N", default_value_t = billboards::BillboardOptions::TEXELS)]
     texels: u32,
     /// Draw all horizontal faces at one height, as the paper does: nothing bounds how far they go up or down
     #[arg(long)]
@@ -43,7 +43,7 @@ pub(super) struct BillboardsArgs {
 }
 
 impl BillboardsArgs {
-    fn resolved(&self) -> Result<billboards::Options> {
+    fn resolved(&self) -> Result<billboards::BillboardOptions> {
         let limit = match (self.error_deg, self.error_abs) {
             (Some(degrees), _) => Limit::Angle(Aperture::degrees(degrees)?),
             (None, Some(distance)) => Limit::Distance(distance),
@@ -53,7 +53,7 @@ impl BillboardsArgs {
                 ));
             }
         };
-        Ok(billboards::Options {
+        Ok(billboards::BillboardOptions {
             limit,
             up: self.up,
             directions: self.directions,

@@ -94,7 +94,7 @@ pub(super) fn run(
         require_sheet(&set)?;
     }
     let mesh = mesh.enter_frame(frame);
-    let (scene, caster) = (Scene::of(&mesh), RayCaster::new(&mesh));
+    let (scene, caster) = (Scene::of(&mesh), RayCaster::new(mesh.in_frame_units()));
     let mut tally = Tally::default();
     let mut pictures = Vec::new();
     let mut dropped = 0;

@@ -299,12 +299,16 @@ fn tell(found: &DistanceReport) {
         if !d.is_proven {
             answer!(
                 "  proven: at most {:.6e}{}; the claim itself is undecided on {:.2e} of the area",
-                d.proven,
-                percent(d.proven),
+                d.upper_bound,
+                percent(d.upper_bound),
                 d.undecided_area
             );
         } else {
-            answer!("  proven: at most {:.6e}{}", d.proven, percent(d.proven));
+            answer!(
+                "  proven: at most {:.6e}{}",
+                d.upper_bound,
+                percent(d.upper_bound)
+            );
         }
         if !d.holds {
             answer!(

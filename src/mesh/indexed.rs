@@ -258,23 +258,10 @@ impl Mesh {
         boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
-    /// The same mesh with positions in units of `frame`: an exact scaling, undone by [`Mesh::leave_frame`].
-    ///
-    /// The coordinates need not be representable as `f32` any more (a subnormal one is not in file units), so the
-    /// result still says the precision of the *file*.
-    #[must_use]
-    pub fn enter_frame(&self, frame: Frame) -> Self {
+    /// The mesh inside a [`FramedMesh`](super::FramedMesh), the only one whose coordinates its precision may not hold.
+    pub(super) fn in_frame(&self, frame: Frame) -> Self {
         Self {
             positions: self.positions.iter().map(|&p| frame.enter(p)).collect(),
-            ..self.clone()
-        }
-    }
-
-    /// Undoes [`Mesh::enter_frame`].
-    #[must_use]
-    pub fn leave_frame(&self, frame: Frame) -> Self {
-        Self {
-            positions: self.positions.iter().map(|&p| frame.leave(p)).collect(),
             ..self.clone()
         }
     }

@@ -1,4 +1,4 @@
-//! How much a candidate looks like a reference: squared luma error over a set of views, flat and Gouraud.
+//! The likeness of a candidate and a reference: squared luma error over a set of views, flat and Gouraud.
 //!
 //! Lindstrom & Turk 2000, sections 3.2 and 5: results are judged in views that did not drive the simplification (24 of
 //! 512 x 512 pixels, [`ViewSet::evaluation`]), and the views together are one mosaic (equation 2). Deviation: pixels
@@ -37,9 +37,9 @@ pub struct Appearance {
 pub struct WorstView {
     /// Number of the view, from 0.
     pub view: usize,
-    /// How it is shaded there.
+    /// Its shading there.
     pub shading: Interpolation,
-    /// How much it differs.
+    /// Its difference from the reference.
     pub error: SquaredError,
 }
 

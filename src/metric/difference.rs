@@ -1,4 +1,4 @@
-//! Whether two images are equal, and where and how much they are not.
+//! The difference of two images: equal, or the places and sizes of differences.
 //!
 //! There is no tolerance: a pixel differs where any of its values does. Counts are pixels, magnitudes are levels
 //! (for luma and colour) or the absolute difference of the numbers (for sums, ids and depth).
@@ -68,7 +68,7 @@ impl Levels for [u8; 3] {
     }
 }
 
-/// What comparing two images found.
+/// The result of comparing two images.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImageComparison {
@@ -85,7 +85,7 @@ pub enum ImageComparison {
     Pixels(PixelDifference),
 }
 
-/// Where and how much two images of the same size differ.
+/// The places and sizes of the differences of two images of the same size.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PixelDifference {
     /// Pixels that differ, at least 1.

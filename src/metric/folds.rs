@@ -12,7 +12,7 @@ use super::surface::frame_and_diagonal;
 use crate::{
     Progress, Result,
     geometry::{TriangleTree, area_normal},
-    mesh::{Edges, Mesh},
+    mesh::{Edges, FramedMesh, Mesh},
     num::math::{length, sqrt},
     parallel,
 };
@@ -20,7 +20,7 @@ use crate::{
 /// Cosine of the normals below which an edge is folded.
 pub const FOLD_COSINE: f64 = -0.9;
 
-/// How near the reference's surface counts, as a fraction of its diagonal.
+/// Distance within which the reference's surface counts, as a fraction of its diagonal.
 pub const REACH: f64 = 0.01;
 
 /// Folds and flipped faces of a mesh that its reference does not have.
@@ -42,7 +42,7 @@ pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Res
     let (frame, diagonal) = frame_and_diagonal(reference)?;
     let (reference, candidate) = (reference.enter_frame(frame), candidate.enter_frame(frame));
     progress.step("folds", 0, 1)?;
-    let around = Surroundings::of(&reference, REACH * diagonal);
+    let around = FoldReference::of(&reference, REACH * diagonal);
     let is_new = |&&ends: &&[DVec3; 2]| around.is_new(ends);
     let folded_edges = folded(&candidate).iter().filter(is_new).count() as u64;
     let faces: Vec<[DVec3; 3]> = corners(&candidate).collect();
@@ -53,28 +53,28 @@ pub fn folds(reference: &Mesh, candidate: &Mesh, progress: &dyn Progress) -> Res
     })
 }
 
-/// What a reference has near some faces: its folded edges and its sides.
+/// The folded edges and the orientation of a reference, which the faults of other meshes are counted beside.
 #[derive(Clone, Debug)]
-pub struct Surroundings {
+pub struct FoldReference {
     creases: Option<TriangleTree>,
-    sides: Option<Sides>,
+    orientation: Option<Orientation>,
     reach: f64,
 }
 
-impl Surroundings {
+impl FoldReference {
     /// Those of a mesh, or of a part of it that has all faces within `reach` (a length) of what will be asked about.
     /// O(n log n).
     #[must_use]
-    pub fn of(part: &Mesh, reach: f64) -> Self {
+    pub fn of(part: &FramedMesh, reach: f64) -> Self {
         let creases = folded(part).into_iter().map(|[a, b]| [a, b, b]);
         Self {
             creases: TriangleTree::new(creases.collect()),
-            sides: Sides::of_part(part, reach),
+            orientation: Orientation::of_part(part, reach),
             reach,
         }
     }
 
-    /// Whether an edge, if it is folded, is so where nothing of the reference is.
+    /// True for a folded edge that is away from all folded edges of the reference.
     #[must_use]
     pub fn is_new(&self, [a, b]: [DVec3; 2]) -> bool {
         let middle = (a + b) * 0.5;
@@ -85,33 +85,31 @@ impl Surroundings {
         near.is_none_or(|squared| squared > self.reach * self.reach)
     }
 
-    /// As [`Sides::is_flipped`]; false where there is no surface.
+    /// As [`Orientation::is_flipped`]; false where there is no surface.
     #[must_use]
     pub fn is_flipped(&self, face: [DVec3; 3]) -> bool {
-        self.sides
-            .as_ref()
-            .is_some_and(|sides| sides.is_flipped(face))
+        let orientation = self.orientation.as_ref();
+        orientation.is_some_and(|orientation| orientation.is_flipped(face))
     }
 }
 
-/// The surface of a mesh, and which way it looks.
+/// The surface of a reference and the side it shows: what tells whether a face is flipped.
 #[derive(Clone, Debug)]
-pub struct Sides {
+pub struct Orientation {
     surface: TriangleTree,
     reach: f64,
 }
 
-impl Sides {
-    /// The sides of `reference`, in its units, which should be those of a [frame](crate::num::Frame); `None` without
-    /// triangles. O(n log n).
+impl Orientation {
+    /// The orientation of `reference`; `None` without triangles. O(n log n).
     #[must_use]
-    pub fn new(reference: &Mesh) -> Option<Self> {
-        let (low, high) = reference.bounds()?;
+    pub fn new(reference: &FramedMesh) -> Option<Self> {
+        let (low, high) = reference.in_frame_units().bounds()?;
         Self::of_part(reference, REACH * length(high - low))
     }
 
-    /// As [`Sides::new`], of a part of a surface that is near for what is within `reach`.
-    pub(crate) fn of_part(part: &Mesh, reach: f64) -> Option<Self> {
+    /// As [`Orientation::new`], of a part of a surface that is near for what is within `reach`.
+    pub(crate) fn of_part(part: &FramedMesh, reach: f64) -> Option<Self> {
         let surface = TriangleTree::new(corners(part).collect())?;
         Some(Self { surface, reach })
     }
@@ -122,7 +120,7 @@ impl Sides {
         &self.surface
     }
 
-    /// Whether some surface within reach looks as a face does, which is then not flipped; any part of the reference can
+    /// True where some surface within reach looks as a face does, which is then not flipped; any part of the reference can
     /// say so.
     #[must_use]
     pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
@@ -147,7 +145,7 @@ impl Sides {
     }
 }
 
-fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
+fn corners(mesh: &FramedMesh) -> impl Iterator<Item = [DVec3; 3]> {
     let positions = mesh.positions();
     mesh.triangles()
         .iter()
@@ -155,10 +153,10 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 }
 
 /// The ends of the folded edges of a mesh.
-fn folded(mesh: &Mesh) -> Vec<[DVec3; 2]> {
+fn folded(mesh: &FramedMesh) -> Vec<[DVec3; 2]> {
     let positions = mesh.positions();
     let mut found = Vec::new();
-    for (edge, faces) in Edges::of(mesh).iter() {
+    for (edge, faces) in Edges::of(mesh.in_frame_units()).iter() {
         let &[first, second] = faces else {
             continue;
         };

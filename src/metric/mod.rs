@@ -1,4 +1,4 @@
-//! How far two meshes or two sets of images are apart.
+//! Measures of the difference between two meshes or two sets of images.
 //!
 //! [`appearance`] draws two meshes over a set of views and compares the pictures.
 //! [`luma`] is what simplification minimises: the exact squared difference of luma images (Lindstrom & Turk 2000,
@@ -17,4 +17,4 @@ pub mod surface;
 
 pub use difference_strip::difference_strip;
 
-pub use folds::{Sides, Surroundings};
+pub use folds::{FoldReference, Orientation};

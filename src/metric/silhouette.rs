@@ -21,7 +21,7 @@ use crate::{
     view::Eye,
 };
 
-/// How many edges are silhouette edges in exactly 0, 1, ... views.
+/// Counts of the edges that are silhouette edges in exactly 0, 1, ... views.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SilhouetteHistogram {
     counts: Vec<u64>,

@@ -318,7 +318,7 @@ impl Surface {
     }
 }
 
-/// Which points of which triangles are measured.
+/// A plan of sample points: the divisions of every triangle.
 struct Plan {
     /// Into how many parts every side of a triangle is divided; 0 for one without area.
     divisions: Vec<u32>,

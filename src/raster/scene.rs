@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{Face, FaceGeometry, Paint, Projector};
 use crate::{
-    mesh::{ChannelKind, Mesh},
+    mesh::{ChannelKind, FramedMesh},
     num::math::unit,
 };
 
@@ -27,10 +27,10 @@ impl Scene {
     /// The triangles of a mesh, with ids in file order from 0, and its vertex colours if it has any (opacity is
     /// ignored, absent colours are white).
     #[must_use]
-    pub fn of(mesh: &Mesh) -> Self {
+    pub fn of(mesh: &FramedMesh) -> Self {
         let ids = (0..mesh.triangles().len() as u32).collect();
         let mut scene = Self::new(mesh.positions().to_vec(), mesh.triangles().to_vec(), ids);
-        let attributes = mesh.attributes();
+        let attributes = mesh.in_frame_units().attributes();
         let channel = attributes
             .channel(ChannelKind::Color)
             .or_else(|| attributes.channel(ChannelKind::ColorAlpha));

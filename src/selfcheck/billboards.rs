@@ -8,7 +8,7 @@ use crate::{
     bound::{planar::Aperture, view_cell::ViewCell},
     encode::png::Picture,
     mesh::{Mesh, generate},
-    simplify::billboards::{Limit, Options, billboards},
+    simplify::billboards::{BillboardOptions, Limit, billboards},
 };
 
 pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
@@ -26,10 +26,10 @@ pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
         ),
     ];
     for (name, mesh, cell) in cases {
-        let options = Options {
+        let options = BillboardOptions {
             directions: 30,
             texels: 96,
-            ..Options::within(Limit::Angle(Aperture::degrees(0.4)?))
+            ..BillboardOptions::within(Limit::Angle(Aperture::degrees(0.4)?))
         };
         let cloud = billboards(&mesh, &cell, &options, &Silent)?;
         let mut bytes = Vec::new();

@@ -99,7 +99,7 @@ pub(super) fn side_by_side(
     let views = ViewSet {
         width: size,
         height: size,
-        ..ViewSet::evaluation(&sphere_of(&first.enter_frame(frame))?)?
+        ..ViewSet::evaluation(&sphere_of(first.enter_frame(frame).in_frame_units())?)?
     };
     let view = *views
         .views

@@ -16,9 +16,9 @@ use crate::{
         fold_amount, is_folded,
     },
     geometry::double_area,
-    mesh::Mesh,
+    mesh::{FramedMesh, Mesh},
     metric::{
-        Sides, Surroundings,
+        FoldReference, Orientation,
         folds::{FOLD_COSINE, REACH},
     },
     num::math,
@@ -56,7 +56,7 @@ impl<'a> Nearby<'a> {
 
     /// What is near the middles of `sharp` edges and of the faces at them, of every `stride`-th face: all of them are
     /// enough to find faults.
-    fn at_faces(&self, live: &LiveMesh, sharp: &[u32], stride: usize) -> Mesh {
+    fn at_faces(&self, live: &LiveMesh, sharp: &[u32], stride: usize) -> FramedMesh {
         let faces = faces_at(live, sharp).into_iter();
         let boxes = faces.filter_map(|face| {
             let [a, b, c] = live.points(face)?;
@@ -70,7 +70,7 @@ impl<'a> Nearby<'a> {
     }
 
     /// What is near the faces at some vertices, wherever one of those may go: enough to repair them.
-    fn at_vertices(&self, live: &LiveMesh, vertices: &[Vec<u32>]) -> Mesh {
+    fn at_vertices(&self, live: &LiveMesh, vertices: &[Vec<u32>]) -> FramedMesh {
         let boxes = vertices.iter().flatten().map(|&v| {
             let faces = live.triangles_at(v).filter_map(|f| live.points(f));
             let start = [live.position(v); 2];
@@ -88,7 +88,7 @@ impl<'a> Nearby<'a> {
         live: &LiveMesh,
         boxes: impl Iterator<Item = [DVec3; 2]>,
         stride: usize,
-    ) -> Mesh {
+    ) -> FramedMesh {
         let frame = live.frame();
         let margin = DVec3::splat(self.reach);
         let boxes = boxes.map(|[low, high]| [low - margin, high + margin].map(|p| frame.leave(p)));
@@ -98,7 +98,7 @@ impl<'a> Nearby<'a> {
 }
 
 /// Tells faults near which it knows the original.
-struct Faults(Surroundings);
+struct Faults(FoldReference);
 
 impl Faults {
     /// Of `sharp` edges and the faces at them, the vertices of every folded edge's faces and of every flipped face.
@@ -180,14 +180,14 @@ pub(super) fn repair_folds(
     let mut sharp = sharp_edges(live, None);
     // Nearly all of them look where one of a few faces of the original does: no others are needed to see that.
     let nearby = Nearby::new(live, original);
-    let some = Sides::of_part(&nearby.at_faces(live, &sharp, FEW), nearby.reach);
+    let some = Orientation::of_part(&nearby.at_faces(live, &sharp, FEW), nearby.reach);
     let agrees = |face| some.as_ref().is_some_and(|sides| sides.agrees(face));
     sharp.retain(|&edge| {
         let mut faces = faces_at(live, &[edge]).into_iter();
         let differs = |f| live.points(f).is_some_and(|face| !agrees(face));
         is_folded(live, edge, FOLD_COSINE) || faces.any(differs)
     });
-    let faults = |part: &Mesh| Faults(Surroundings::of(part, nearby.reach));
+    let faults = |part: &FramedMesh| Faults(FoldReference::of(part, nearby.reach));
     let mut left = faults(&nearby.at_faces(live, &sharp, 1)).find(live, &sharp);
     if left.is_empty() {
         return Ok(());

@@ -10,12 +10,12 @@ use lodmark::{
     },
     mesh::generate,
     num::fixed::SubpixelBits,
-    raster::{self, Grid, Scene},
+    raster::{self, Grid},
     selfcheck::{GROUPS, Group, Item, Mismatch, RECORD_NAME, Record, bless, check, picture_path},
     view::{Sphere, ViewSet},
 };
 
-use crate::support::{folder, lodmark};
+use crate::support::{folder, lodmark, scene_of};
 
 fn checked_in() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/golden"))
@@ -79,7 +79,7 @@ fn one_bit_of_one_sample_changes_the_hash() {
     let mesh = generate::probe();
     let sphere = Sphere::of_mesh(&mesh).expect("it has triangles");
     let set = ViewSet::costs(&sphere).expect("views");
-    let scene = Scene::of(&mesh);
+    let scene = scene_of(&mesh);
     let luma = raster::luma(&scene, &set.views[3], &set).tones;
     let before = plane_sha256(&luma);
     for (at, bit) in [(0, 0), (luma.values().len() - 1, 7), (32_768, 3)] {

@@ -1,4 +1,4 @@
-//! Whether an observer anywhere in a view cell sees a piece of surface and what stands for it within an angle.
+//! A limit on the angle between a piece of surface and what stands for it, for an observer anywhere in a view cell.
 //!
 //! First by distance (notes, 4.7): what lies within `d sin T` of a point at the distance `d` subtends at most `T`. Where
 //! that fails, by direction, which allows much more along the lines of sight: for points `P` of a piece, displacements `D`
@@ -26,7 +26,7 @@ use crate::{
 /// The part of every limit that is given away, and a part of the largest coordinate.
 const MARGIN: f64 = 1e-7;
 const ABSOLUTE: f64 = 1e-13;
-/// How often a part of a cell is halved.
+/// Most times that a part of a cell is halved.
 const DEPTH: u32 = 10;
 /// Parts that are looked at for one piece.
 const PARTS: u32 = 64;
@@ -36,7 +36,7 @@ const PARTS: u32 = 64;
 pub struct AngleLimit {
     radii: Vec<f64>,
     tangent: f64,
-    /// What rounding may add to a displacement.
+    /// The largest error of a displacement by rounding.
     absolute: f64,
     /// Convex parts that together hold a viewpoint with the largest angle; none for a cell without an end.
     parts: Vec<Vec<DVec3>>,

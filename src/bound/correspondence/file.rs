@@ -24,7 +24,7 @@ impl Correspondence {
     /// faces of it.
     ///
     /// # Errors
-    /// What `out` says.
+    /// Those of `out`.
     pub fn write(&self, original: &Mesh, simplified: &Mesh, out: &mut dyn Write) -> Result<()> {
         let mut out = Summed {
             out,

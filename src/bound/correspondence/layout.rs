@@ -1,18 +1,17 @@
 //! The faces around a collapsed edge before and after, laid out in one plane so that points of one can be found in the
 //! other.
 //!
-//! Both fans are projected along the mean normal of the faces before; a fan that is not a graph over that plane, before or
-//! after, has no layout. Projection moves no point of a flat surface. At a boundary the outlines differ: there the new
+//! Both are projected along the mean normal of the faces before; faces that are not a graph over that plane, before or
+//! after, have no layout. Projection moves no point of a flat surface. At a boundary the outlines differ: there the new
 //! vertex stands, in the plane, for the point of the old boundary next to it, and the old boundary vertices beside that
 //! for points of the new boundary edges, so that both layouts fill the same polygon: some new faces consist of two parts.
 //! Every triangle is turned the same way, those after go around the new vertex no more than once, and the areas are the
 //! same: so both fill the polygon once.
-//! Plane coordinates are scaled so that the fan has a size near 1.
+//! Plane coordinates are scaled so that the faces have a size near 1.
 
 use glam::{DVec2, DVec3};
 
-use super::sectors::Star;
-use crate::num::math::unit;
+use super::{projection::Projection, sectors::Sectors};
 
 /// A face of the mesh that changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,15 +35,15 @@ pub struct Collapse<'a> {
     pub keep: u32,
     /// The other end.
     pub gone: u32,
-    /// Where the new vertex lies.
+    /// The position of the new vertex.
     pub to: DVec3,
 }
 
-/// Twice the least area of a triangle in the plane, where the fan has a size near 1: weights in it are good to 1e-10.
+/// Twice the least area of a triangle in the plane, where the faces have a size near 1: weights in it are good to 1e-10.
 const LEAST_AREA: f64 = 1e-6;
-/// By how much the areas before and after may differ.
+/// Largest difference of the areas before and after.
 const AREA_ERROR: f64 = 1e-9;
-/// Where a boundary vertex may lie on its new edge: not on the ends.
+/// Least share of its new edge between a boundary vertex and an end.
 const ENDS: f64 = 1e-3;
 
 /// A face before, in the plane.
@@ -52,9 +51,9 @@ const ENDS: f64 = 1e-3;
 pub(super) struct Before {
     pub(super) face: Face,
     pub(super) plane: [DVec2; 3],
-    /// The face keeps its place in the plane and becomes this part; nothing of it lies in the star.
+    /// The face keeps its place in the plane and becomes this part; nothing of it lies in the sectors.
     pub(super) outer: Option<Part>,
-    /// Whether the side across from each corner is shared with faces that do not change, or keep their place.
+    /// For each corner true where the side across from it is shared with faces that do not change, or keep their place.
     pub(super) fixed: [bool; 3],
 }
 
@@ -90,12 +89,12 @@ impl Part {
     }
 }
 
-/// Two triangulations of one polygon: the faces before, and after them a star around the new vertex and parts that keep
-/// their place.
+/// Two triangulations of one polygon: the faces before, and after them the sectors around the new vertex and parts that
+/// keep their place.
 #[derive(Clone, Debug)]
-pub struct Fan {
+pub struct Layout {
     pub(super) before: Vec<Before>,
-    pub(super) star: Star,
+    pub(super) sectors: Sectors,
 }
 
 /// A face before with exactly one end, and its side across from that end.
@@ -117,7 +116,7 @@ impl Sector {
     }
 }
 
-impl Fan {
+impl Layout {
     /// Lays out a collapse; `None` where the faces form no disc, are not all turned the same way, or are folded, before
     /// or after.
     #[must_use]
@@ -151,7 +150,7 @@ impl Fan {
             return None;
         }
         let projection = Projection::of(collapse)?;
-        let mut layout = Layout {
+        let mut layout = LayoutBuilder {
             before: Vec::with_capacity(collapse.removed.len()),
             parts: Vec::with_capacity(sectors.len()),
         };
@@ -180,19 +179,19 @@ impl Fan {
         }
         Some(Self {
             before: layout.before,
-            star: Star::new(hub, closed, layout.parts)?,
+            sectors: Sectors::new(hub, closed, layout.parts)?,
         })
     }
 }
 
-/// A fan in the making.
-struct Layout {
+/// A layout in the making.
+struct LayoutBuilder {
     before: Vec<Before>,
     /// The parts around the new vertex, each with the corner that this is.
     parts: Vec<(Part, usize)>,
 }
 
-impl Layout {
+impl LayoutBuilder {
     /// The parts after the collapse of an edge inside: one for each face.
     fn surround(&mut self, collapse: &Collapse<'_>, sectors: &[Sector], new: DVec2) -> Option<()> {
         let after = After::of(collapse);
@@ -289,13 +288,13 @@ impl Layout {
         }
     }
 
-    /// Whether the parts after fill what the faces before do: at a boundary that is not certain.
+    /// True where the parts after fill the polygon of the faces before: at a boundary that is not certain.
     fn fills_the_same(&self) -> bool {
         let before: f64 = self.before.iter().map(|b| double_area(&b.plane)).sum();
         let outer = self.before.iter().filter(|b| b.outer.is_some());
         let kept: f64 = outer.map(|b| double_area(&b.plane)).sum();
-        let star: f64 = self.parts.iter().map(|(p, _)| double_area(&p.plane)).sum();
-        (before - kept - star).abs() <= AREA_ERROR
+        let around: f64 = self.parts.iter().map(|(p, _)| double_area(&p.plane)).sum();
+        (before - kept - around).abs() <= AREA_ERROR
     }
 }
 
@@ -354,7 +353,7 @@ fn in_order(sectors: &[Sector]) -> Option<(Vec<Sector>, bool)> {
     (closed == first.is_none()).then_some((row, closed))
 }
 
-/// Where the foot of `p` lies between `from` (0) and `to` (1), not clamped; 0 where these are one point.
+/// The place of the foot of `p` between `from` (0) and `to` (1), not clamped; 0 where these are one point.
 fn share(p: DVec3, from: DVec3, to: DVec3) -> f64 {
     let side = to - from;
     let along = (p - from).dot(side) / side.dot(side);
@@ -364,47 +363,4 @@ fn share(p: DVec3, from: DVec3, to: DVec3) -> f64 {
 /// Twice the signed area.
 fn double_area([a, b, c]: &[DVec2; 3]) -> f64 {
     (*b - *a).perp_dot(*c - *a)
-}
-
-/// From space to the plane of a fan.
-struct Projection {
-    origin: DVec3,
-    axes: [DVec3; 2],
-    scale: f64,
-}
-
-impl Projection {
-    fn of(collapse: &Collapse<'_>) -> Option<Self> {
-        let mut sum = DVec3::ZERO;
-        for Face {
-            points: [a, b, c], ..
-        } in collapse.removed
-        {
-            sum += (*b - *a).cross(*c - *a);
-        }
-        let normal = unit(sum)?;
-        let size = normal.abs();
-        let other = if size.x <= size.y && size.x <= size.z {
-            DVec3::X
-        } else if size.y <= size.z {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        };
-        let across = unit(other.cross(normal))?;
-        let origin = collapse.to;
-        let reach = collapse.removed.iter().flat_map(|f| f.points);
-        let reach = reach.fold(0.0_f64, |r, p| r.max((p - origin).abs().max_element()));
-        let scale = 1.0 / reach;
-        (reach > 0.0 && scale.is_finite()).then_some(Self {
-            origin,
-            axes: [across, normal.cross(across)],
-            scale,
-        })
-    }
-
-    fn of_point(&self, p: DVec3) -> DVec2 {
-        let d = (p - self.origin) * self.scale;
-        DVec2::new(d.dot(self.axes[0]), d.dot(self.axes[1]))
-    }
 }

@@ -1,4 +1,4 @@
-//! The outlines of what several pieces of one original triangle cover together, in the plane of a fan.
+//! The outlines of the union of several pieces of one original triangle, in the plane of a layout.
 //!
 //! Sides that two pieces have in opposite directions, bit for bit in the triangle, cancel out; what is left are closed
 //! outlines. Nothing here depends on rounding: whatever the pieces are, the sides of the outlines add up to theirs.
@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::sides::Side;
 use crate::num::fixed::Weights31;
 
-/// Sides of the pieces of one triangle in one fan: a map that needs more is a tangle.
+/// Sides of the pieces of one triangle in one layout: a map that needs more is a tangle.
 const SIDES: usize = 2_048;
 
 /// Units by which a corner may lie on the wrong side of a line: roundings of several cuts.
@@ -19,7 +19,7 @@ const ROUNDED: i64 = 256;
 pub(super) struct Corner {
     pub(super) source: Weights31,
     pub(super) plane: DVec2,
-    /// On the rim of the fan, where the triangle across the side goes on and has this corner as well.
+    /// On the rim of the layout, where the triangle across the side goes on and has this corner as well.
     pub(super) fixed: bool,
 }
 

@@ -1,6 +1,6 @@
 //! The file of a correspondence, read as triangles and what stands for them: see `file` for the format.
 //!
-//! What is read is held against the counts and checksums in the file, against both meshes, and against the area of
+//! The file is held against its own counts and checksums, against both meshes, and against the area of
 //! every original triangle, which that of its pieces is to the last unit. That pieces leave no gap is checked by the
 //! verifier, which reads the file for itself.
 

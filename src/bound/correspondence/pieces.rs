@@ -1,7 +1,7 @@
 //! The map from the surface as it was to the surface as it is: every original triangle in convex pieces, each mapped by
 //! one affine map into one live face.
 //!
-//! A collapse puts together what a triangle has in the faces before (in the plane of their [`Fan`]), as far as its outline,
+//! A collapse puts together what a triangle has in the faces before (in the plane of their [`Layout`]), as far as its outline,
 //! and cuts that along the faces after. Displacement is a convex function on a piece, so it is largest at a corner:
 //! nothing is added up over collapses, and a surface that returns to where it was is as good as one that never moved. The
 //! notes (4.9) propose a number per face that adds up the steps instead, and that cuts are kept for ever; here no more is
@@ -13,98 +13,27 @@
 //! corner, whatever rounding did to the corners: the winding numbers of all pieces add up to that of the triangle. It lies
 //! in no more than one up to rounding, as those triangles all lie the right way up. Target weights are in their faces.
 //! Triangles that share a side map it to the same points, up to rounding, as far as tests find with displacements of up
-//! to a third of a side; of surfaces that are pushed together farther than that no more is promised than the limit. Memory: 16 bytes per corner of a piece.
+//! to a third of a side; of surfaces that are pushed together farther than that no more is promised than the limit.
+//! Memory: 16 bytes per corner of a piece.
 
 use glam::DVec3;
 
 use super::{
-    layout::{Before, Fan, Part},
+    layout::{Before, Layout, Part},
     outline::{self, OutlineScratch, outlines, tidy, turn_to_fan},
+    piece::{Allowance, Answer, Corner, FacePieces, Piece, is_whole, itself},
     sectors::CutScratch,
 };
 use crate::num::{fixed::Weights31, math::sqrt};
-
-/// A corner of a piece: weights of the second and third corner of the original triangle, and of the live face.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Corner {
-    /// In the original triangle.
-    pub source: Weights31,
-    /// In the live face.
-    pub target: Weights31,
-}
-
-/// A part of an original triangle and the part of a live face that stands for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece<'a> {
-    /// The original triangle.
-    pub triangle: u32,
-    /// A polygon, counter-clockwise in the triangle up to rounding; mapped linearly on the triangles from its first corner.
-    pub corners: &'a [Corner],
-}
-
-/// Decides what a piece may be displaced to.
-pub trait Allowance {
-    /// True where every point of the piece may be replaced: `from` and `to` are corresponding corners of the piece of an
-    /// original triangle and of what stands for it.
-    fn allows(&self, triangle: u32, from: &[DVec3], to: &[DVec3]) -> bool;
-
-    /// A displacement that is allowed for every point of an original triangle, whatever its direction.
-    fn radius(&self, triangle: u32) -> f64;
-}
-
-/// The answer about a collapse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// Everything may be where the collapse would put it.
-    Allowed,
-    /// Something may not.
-    Denied,
-    /// The map would tangle up.
-    Tangled,
-}
-
-/// The pieces that a face stands for.
-#[derive(Clone, Debug, Default)]
-struct FacePieces {
-    /// Original triangle and the end of its corners.
-    heads: Vec<(u32, u32)>,
-    corners: Vec<Corner>,
-    /// Largest displacement of any corner.
-    displacement: f64,
-    /// The face never changed and stands for itself.
-    itself: bool,
-}
-
-impl FacePieces {
-    fn iter(&self) -> impl Iterator<Item = Piece<'_>> {
-        let mut start = 0;
-        self.heads.iter().map(move |&(triangle, end)| {
-            let corners = &self.corners[start..end as usize];
-            start = end as usize;
-            Piece { triangle, corners }
-        })
-    }
-}
 
 /// Corners that all pieces may have together, for each original triangle and for small meshes: this bounds the memory.
 /// Simplified scans need some five for each triangle.
 const CORNERS_PER_TRIANGLE: usize = 64;
 const CORNERS_AT_LEAST: usize = 1 << 16;
 
-/// The corners of a face as weights.
-const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-
-/// The only piece of a face that never changed.
-fn itself() -> [Corner; 3] {
-    CORNERS.map(|weights| Corner {
-        source: Weights31::new(weights),
-        target: Weights31::new(weights),
-    })
-}
-
 /// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
+pub struct PieceScratch {
     /// Pieces of triangles that are in several: triangle, face before, and corners in `cut`.
     split: Vec<(u32, u32, [u32; 2])>,
     cut: Vec<outline::Corner>,
@@ -140,7 +69,7 @@ impl Placed {
         self.from.clear();
         self.to.clear();
         for corner in &self.part {
-            // What is judged is what is kept.
+            // The rounded weights are judged, which are those that are kept.
             let target = Weights31::new(part.weights_at(corner.plane));
             let source = corner.source;
             self.corners.push(Corner { source, target });
@@ -151,7 +80,7 @@ impl Placed {
     }
 }
 
-/// What became of every point of an original surface.
+/// The map of an original surface to the live faces that its parts have become.
 #[derive(Clone, Debug)]
 pub struct Correspondence {
     originals: Vec<[DVec3; 3]>,
@@ -275,28 +204,36 @@ impl Correspondence {
         self.faces[face as usize].displacement
     }
 
-    /// Whether everything that the faces of a fan stand for may be where the collapse would put it.
+    /// Decides whether everything that the faces of a layout stand for may be where the collapse would put it.
     ///
-    /// Time: linear in the corners of the pieces of the fan, and that of the allowance for each piece after.
+    /// Time: linear in the corners of the pieces of the layout, and that of the allowance for each piece after.
     #[must_use]
-    pub fn allows(&self, fan: &Fan, allowance: &impl Allowance, scratch: &mut Scratch) -> Answer {
+    pub fn allows(
+        &self,
+        layout: &Layout,
+        allowance: &impl Allowance,
+        scratch: &mut PieceScratch,
+    ) -> Answer {
         let mut corners = self.total;
-        let all = self.visit(fan, scratch, |triangle, _, placed| {
+        let all = self.visit(layout, scratch, |triangle, _, placed| {
             corners += placed.corners.len();
             allowance.allows(triangle, &placed.from, &placed.to)
         });
         let most = CORNERS_AT_LEAST.max(CORNERS_PER_TRIANGLE * self.originals.len());
         match all {
-            Some(true) if corners - self.cut_corners(fan) > most => Answer::Tangled,
+            Some(true) if corners - self.cut_corners(layout) > most => Answer::Tangled,
             Some(true) => Answer::Allowed,
             Some(false) => Answer::Denied,
             None => Answer::Tangled,
         }
     }
 
-    /// Corners of the pieces of a fan that were cut.
-    fn cut_corners(&self, fan: &Fan) -> usize {
-        let faces = fan.before.iter().map(|b| &self.faces[b.face.id as usize]);
+    /// Corners of the pieces of a layout that were cut.
+    fn cut_corners(&self, layout: &Layout) -> usize {
+        let faces = layout
+            .before
+            .iter()
+            .map(|b| &self.faces[b.face.id as usize]);
         faces.map(|pieces| pieces.corners.len()).sum()
     }
 
@@ -304,11 +241,11 @@ impl Correspondence {
     /// that says true. `None` for a tangle.
     fn visit(
         &self,
-        fan: &Fan,
-        scratch: &mut Scratch,
+        layout: &Layout,
+        scratch: &mut PieceScratch,
         mut visit: impl FnMut(u32, &Part, &Placed) -> bool,
     ) -> Option<bool> {
-        let Scratch {
+        let PieceScratch {
             split,
             cut,
             outline,
@@ -319,7 +256,7 @@ impl Correspondence {
         } = scratch;
         split.clear();
         cut.clear();
-        for (i, before) in fan.before.iter().enumerate() {
+        for (i, before) in layout.before.iter().enumerate() {
             for piece in self.pieces(before.face.id) {
                 let start = cut.len();
                 cut.extend(in_plane(before, piece));
@@ -333,7 +270,7 @@ impl Correspondence {
                         return Some(false);
                     }
                 } else if is_whole(piece) {
-                    if !fan.star.cut(&cut[start..], cutting, place)? {
+                    if !layout.sectors.cut(&cut[start..], cutting, place)? {
                         return Some(false);
                     }
                 } else {
@@ -356,7 +293,7 @@ impl Correspondence {
                     let covers = placed.place(self.original(triangle), polygon, part)?;
                     Some(!covers || visit(triangle, part, placed))
                 };
-                if !fan.star.cut(&outline[start..end], cutting, place)? {
+                if !layout.sectors.cut(&outline[start..end], cutting, place)? {
                     return Some(false);
                 }
                 start = end;
@@ -367,9 +304,9 @@ impl Correspondence {
 
     /// Takes over a collapse that was allowed; false, and nothing is changed, for one that would tangle up.
     #[must_use]
-    pub fn apply(&mut self, fan: &Fan, scratch: &mut Scratch) -> bool {
-        let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(fan.before.len());
-        let all = self.visit(fan, scratch, |triangle, part, placed| {
+    pub fn apply(&mut self, layout: &Layout, scratch: &mut PieceScratch) -> bool {
+        let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(layout.before.len());
+        let all = self.visit(layout, scratch, |triangle, part, placed| {
             let known = new.iter().position(|(id, _)| *id == part.face.id);
             let i = known.unwrap_or(new.len());
             if known.is_none() {
@@ -387,8 +324,8 @@ impl Correspondence {
         if all != Some(true) {
             return false;
         }
-        self.total -= self.cut_corners(fan);
-        for before in &fan.before {
+        self.total -= self.cut_corners(layout);
+        for before in &layout.before {
             self.faces[before.face.id as usize] = FacePieces::default();
         }
         for (id, mut pieces) in new {
@@ -417,15 +354,6 @@ fn in_plane(before: &Before, piece: Piece<'_>) -> impl Iterator<Item = outline::
             fixed: (0..3).any(|k| before.fixed[k] && weights[k] <= OFF),
         }
     })
-}
-
-/// True where a piece is all of its triangle.
-fn is_whole(piece: Piece<'_>) -> bool {
-    let is_corner = |c: &Corner| {
-        let [u, v] = c.source.bits();
-        u == Weights31::ONE || v == Weights31::ONE || (u == 0 && v == 0)
-    };
-    piece.corners.len() == 3 && piece.corners.iter().all(is_corner)
 }
 
 /// A point of a triangle by the weights of its second and third corner.

@@ -1,23 +1,23 @@
-//! The triangles around a new vertex in the plane of a fan, and polygons cut along the spokes between them.
+//! The triangles around a new vertex in the plane of a layout, and polygons cut along the spokes between them.
 //!
 //! A polygon is not clipped by lines but walked around: each corner belongs to the sector that it lies deepest in, and a
 //! side crosses the spokes between the sectors of its ends. So the parts fit together whatever the rounding: the sides
 //! along a spoke come in pairs of opposite directions with the same ends, bit for bit, and all other sides are those of
 //! the polygon. New corners come only where a crossed side lies on a side of the original triangle, and are exactly on
-//! that; other sides are shared with pieces outside of the fan and cross at one of their ends.
+//! that; other sides are shared with pieces outside of the layout and cross at one of their ends.
 
 use glam::DVec2;
 
 use super::{layout::Part, outline::Corner, sides::Side};
 use crate::num::{fixed::Weights31, math::sqrt};
 
-/// Corners no farther than this from a spoke lie on it: a few roundings of weights, in a plane where fans have a size
+/// Corners no farther than this from a spoke lie on it: a few roundings of weights, in a plane where faces have a size
 /// near 1.
 const SNAP: f64 = 4e-9;
 
 /// Sectors around a hub.
 #[derive(Clone, Debug)]
-pub(super) struct Star {
+pub(super) struct Sectors {
     hub: DVec2,
     /// The last sector ends where the first one begins.
     closed: bool,
@@ -26,7 +26,7 @@ pub(super) struct Star {
     sectors: Vec<Part>,
 }
 
-/// What a walk around a polygon meets.
+/// An event of a walk around a polygon.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     Corner(Corner),
@@ -38,7 +38,7 @@ enum Event {
     },
 }
 
-/// Where a crossing continues: at another crossing, or over the hub.
+/// The continuation of a crossing: at another crossing, or over the hub.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Link {
     Open,
@@ -58,7 +58,7 @@ pub(super) struct CutScratch {
     polygon: Vec<Corner>,
 }
 
-impl Star {
+impl Sectors {
     /// Sectors in counter-clockwise order, each with the corner that is the hub; `None` where they go around it more than
     /// once.
     pub(super) fn new(hub: DVec2, closed: bool, parts: Vec<(Part, usize)>) -> Option<Self> {
@@ -288,7 +288,7 @@ impl Star {
         Some(around)
     }
 
-    /// Where a side crosses a spoke.
+    /// The point at which a side crosses a spoke.
     fn crossing(&self, p: Corner, q: Corner, spoke: usize) -> Corner {
         let along = self.spokes[spoke];
         let [dp, dq] = [p, q].map(|c| along.perp_dot(c.plane - self.hub));

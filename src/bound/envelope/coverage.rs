@@ -1,4 +1,4 @@
-//! Whether every point of the original stays near the live mesh.
+//! The certificate that every point of the original stays near the live mesh.
 //!
 //! Every triangle of the original has witnesses: live faces such that each of its points is within reach of one of them.
 //! A change of the mesh takes faces away; only the triangles that have one of those as a witness must be looked at again,
@@ -17,7 +17,7 @@ const FACES: usize = Coverage::FACES;
 /// Pieces that one test looks at, at most.
 const PIECES: usize = 1 << 16;
 
-/// What the live faces stand for.
+/// For every original triangle the live faces that it is near to, its witnesses.
 #[derive(Clone, Debug, Default)]
 pub struct Coverage {
     points: Vec<DVec3>,
@@ -41,13 +41,13 @@ pub struct Trial {
     /// Witnesses that stay.
     staying: Vec<u32>,
     facets: Vec<Facet>,
-    /// Which of the staying witnesses, and which of all faces, are within reach of every point.
+    /// For every point the staying witnesses, and all faces, within its reach, as bits.
     staying_masks: Vec<u128>,
     masks: Vec<u128>,
     pieces: Vec<([DVec3; 3], [u128; 3])>,
 }
 
-/// What a change that passed its test does to the witnesses.
+/// The new witnesses after a change that passed its test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
     removed: Vec<u32>,

@@ -17,7 +17,7 @@ use crate::{
 /// `sin^2` of the corner below which a triangle is a sliver: its barycentric coordinates may point at the wrong edge.
 const SLIVER: f64 = 1e-8;
 
-/// How a triangle is cut in two: the corner that is alone on its side, and the points between it and the next two.
+/// A cut of a triangle in two: the corner that is alone on its side, and the points between it and the next two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
     pub(super) alone: usize,

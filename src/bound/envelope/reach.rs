@@ -1,4 +1,4 @@
-//! How far is near: the bound less what rounding could add.
+//! The distance within which a surface counts as near: the bound less the largest rounding.
 
 use glam::DVec3;
 

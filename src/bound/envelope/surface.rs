@@ -1,4 +1,4 @@
-//! Whether triangles lie within a distance of the original surface, everywhere.
+//! The certificate that triangles lie within a distance of the original surface, everywhere.
 //!
 //! The distance to one triangle of the original is a convex function: a piece whose three corners are within reach of
 //! the *same* triangle is within reach as a whole. A piece for which the triangle nearest to its centroid does not do is

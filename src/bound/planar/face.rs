@@ -1,5 +1,5 @@
-//! Which lines a face may be projected on, along their normal or any other direction, so that no viewer sees any of its
-//! points move by more than an angle.
+//! The interval of lines that a face may be projected on, along their normal or any other direction, so that no viewer
+//! sees any of its points move by more than an angle.
 //!
 //! Eisemann & Décoret 2007, section 5 with appendices B and C. For one viewpoint the limit over a face is the smallest
 //! value of equation 11, whose stationary points are roots of one quadratic. Its two roots are taken in the form that
@@ -27,8 +27,9 @@
 use glam::DVec2;
 
 use super::{
-    Aperture, ViewerSegment,
-    point::{Tangent, reach_of, tangents},
+    Aperture, Interval, ViewerSegment,
+    interval::Bounds,
+    point::{Tangent, tangents},
 };
 use crate::{Error, Result, num::math};
 
@@ -36,53 +37,8 @@ use crate::{Error, Result, num::math};
 /// is, it would also decide whether the limit beside it is found.
 const CONTACT: f64 = 1e-14;
 
-/// How much more than the aperture [`Projection::may_reach`] lets pass, against rounding.
+/// Share of the aperture that [`Projection::may_reach`] lets pass beyond it, against rounding.
 const LENIENCE: f64 = 1e-6;
-
-/// Offsets `rho` of the valid lines `x . n = rho` with the normal n; none where `min > max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// The smallest valid offset; minus infinity where there is none.
-    pub min: f64,
-    /// The largest valid offset; infinity where there is none.
-    pub max: f64,
-}
-
-impl Interval {
-    /// Every offset.
-    pub const ALL: Self = Self {
-        min: f64::NEG_INFINITY,
-        max: f64::INFINITY,
-    };
-
-    /// No offset.
-    pub const NONE: Self = Self {
-        min: f64::INFINITY,
-        max: f64::NEG_INFINITY,
-    };
-
-    /// The offsets that are in both.
-    #[inline]
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            min: self.min.max(other.min),
-            max: self.max.min(other.max),
-        }
-    }
-
-    /// Whether no offset is in it.
-    #[must_use]
-    pub fn is_empty(self) -> bool {
-        self.min > self.max
-    }
-
-    /// Whether `rho` is in it.
-    #[must_use]
-    pub fn contains(self, rho: f64) -> bool {
-        self.min <= rho && rho <= self.max
-    }
-}
 
 /// A cell, a direction of projection, the normal of the lines that are projected on, and an aperture: what all faces have
 /// in common.
@@ -92,7 +48,7 @@ pub struct Projection {
     direction: DVec2,
     sin: f64,
     cos: f64,
-    /// How much more offset a point has per unit across the direction; 0 for lines across it.
+    /// Offset that a point gains per unit across the direction; 0 for lines across it.
     skew: f64,
     /// Offset along the normal for an offset along the direction, above 0; 1 for lines across the direction.
     scale: f64,
@@ -196,8 +152,8 @@ impl Projection {
         }
     }
 
-    /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: what the
-    /// ends of the cell see of that point, or a cell without an end, at a fraction of the cost.
+    /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: judged from
+    /// the ends of the cell, or for a cell without an end, at a fraction of the cost.
     #[inline]
     #[must_use]
     pub fn may_reach(&self, p: DVec2, offsets: Interval) -> bool {
@@ -314,7 +270,7 @@ impl Projection {
         }
     }
 
-    /// What the ends of the cell allow (equations 11 to 13, appendix C).
+    /// Narrows `bounds` to those that the ends of the cell allow (equations 11 to 13, appendix C).
     #[inline(always)]
     fn narrow_by_ends(&self, face: &Face, bounds: &mut Bounds) {
         let (sin, cos) = (self.sin, self.cos);
@@ -371,8 +327,8 @@ impl Projection {
         }
     }
 
-    /// What the viewpoints between the ends allow: at those where a circle touches the line of the cell the limit is
-    /// linear along the face (equation 10), so that the ends of that part of the face are enough.
+    /// Narrows bounds to those that viewpoints between the ends allow: where a circle touches the line of the cell the
+    /// limit is linear along the face (equation 10), so that the ends of that part of the face are enough.
     #[inline(always)]
     fn narrow_by_tangents(
         &self,
@@ -440,26 +396,4 @@ struct Face {
     from: DVec2,
     to: DVec2,
     offsets: [f64; 2],
-}
-
-/// An interval in the making.
-#[derive(Clone, Copy, Debug)]
-struct Bounds(Interval);
-
-impl Bounds {
-    /// A point of the face at offset `rho`, `sight` away from a viewpoint, may move so far and no farther.
-    #[inline(always)]
-    fn narrow(&mut self, sight: DVec2, rho: f64, sin: f64, cos: f64) {
-        let squared = sight.x * sight.x + sight.y * sight.y;
-        let across = sight.x.abs();
-        let up = rho + reach_of(squared, across, sight.y, sin, cos);
-        let down = rho - reach_of(squared, across, -sight.y, sin, cos);
-        self.0.max = self.0.max.min(up);
-        self.0.min = self.0.min.max(down);
-    }
-
-    /// A point of the face lies at a viewpoint.
-    fn pin(&mut self, rho: f64) {
-        self.0 = self.0.and(Interval { min: rho, max: rho });
-    }
 }

@@ -7,13 +7,15 @@
 
 mod aperture;
 mod face;
+mod interval;
 mod point;
 mod points;
 mod viewer_segment;
 mod widest;
 
 pub use aperture::Aperture;
-pub use face::{Interval, Projection};
+pub use face::Projection;
+pub use interval::Interval;
 pub use point::{Extent, Tangent, segment_extent, tangents, viewpoint_extent};
 pub use points::{Rays, segment_extents};
 pub use viewer_segment::ViewerSegment;

@@ -1,4 +1,5 @@
-//! How far a point may move in a direction before a viewer in the cell sees the change under more than an angle.
+//! The extent of a point: the distance it may move in a direction before a viewer in the cell sees that under more than
+//! an angle.
 //!
 //! Eisemann & Décoret 2007, section 4. Equation 6 is replaced by the law of sines, which needs no square root and no
 //! choice of sign (with the printed radicand it is wrong). Equations 7 and 8 hold as printed; equation 9 lacks a factor
@@ -8,7 +9,7 @@ use glam::DVec2;
 
 use super::{Aperture, ViewerSegment};
 
-/// How far a point may move along a direction.
+/// The distance that a point may move along a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The greatest distance at which no viewer sees the change under more than the aperture; infinite where no
@@ -43,8 +44,8 @@ pub(super) fn reach_of(squared: f64, across: f64, along: f64, sin: f64, cos: f64
     if closing > 0.0 { length } else { straight }
 }
 
-/// How far `point` may move along the unit vector `direction` for one viewpoint; infinite where no distance is too
-/// far, 0 for a point at the viewpoint.
+/// Distance that `point` may move along the unit vector `direction` for one viewpoint; infinite where no distance is
+/// too far, 0 for a point at the viewpoint.
 #[must_use]
 pub fn viewpoint_extent(
     viewpoint: DVec2,
@@ -61,7 +62,7 @@ pub fn viewpoint_extent(
 pub struct Tangent {
     /// Abscissa of the viewpoint minus that of the point (equation 7).
     pub offset: f64,
-    /// How far the point may go by this circle (equation 8): never less than what [`viewpoint_extent`] allows there.
+    /// Distance that this circle allows the point to move (equation 8): never less than [`viewpoint_extent`] there.
     pub length: f64,
 }
 
@@ -134,8 +135,8 @@ pub(super) fn extent_in_frame(
     best
 }
 
-/// How far `point` may move along the unit vector `direction` so that no viewer in `cell` sees it move by more than
-/// the aperture, with the viewpoint that sets the limit. 0 for a point in the cell.
+/// Distance that `point` may move along the unit vector `direction` so that no viewer in `cell` sees it move by more
+/// than the aperture, with the viewpoint that sets the limit. 0 for a point in the cell.
 #[must_use]
 pub fn segment_extent(
     cell: &ViewerSegment,

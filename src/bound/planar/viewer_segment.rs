@@ -1,4 +1,4 @@
-//! Where the viewer may stand in the plane: a segment, a ray, a line or one point.
+//! Viewers in the plane: on a segment, a ray, a line or one point.
 
 use glam::DVec2;
 
@@ -97,7 +97,7 @@ impl ViewerSegment {
         self.origin + self.axis * x
     }
 
-    /// Where the cell's frame has its origin.
+    /// The origin of the cell's frame.
     #[must_use]
     pub fn origin(&self) -> DVec2 {
         self.origin

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::edge::Edge;
 use crate::bound::view_cell::{Shape, ViewCell};
 
-/// What is asked of the viewpoints of a cell.
+/// A question that one viewpoint of a cell decides.
 pub(super) trait Question {
     /// The viewpoint of an edge that decides most; `None` where all are alike.
     fn on_edge(&self, edge: &Edge) -> Option<DVec3>;

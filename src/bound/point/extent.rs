@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{bound::view_cell::ViewCell, num::math::unit};
 
-/// How far a point may move in a direction, and who says so.
+/// The distance that a point may move in a direction, and the viewpoint that limits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// In the units of the positions; infinite where no viewpoint limits it.
@@ -21,8 +21,8 @@ pub struct Extent {
     pub viewpoint: Option<DVec3>,
 }
 
-/// How far `point` may move along `direction` (any length but 0) before a viewer in the cell sees it move by more than
-/// the aperture. 0 where the point lies in the cell; infinite where nobody sees such a move, or for no direction.
+/// Distance that `point` may move along `direction` (any length but 0) before a viewer in the cell sees it move by more
+/// than the aperture. 0 where the point lies in the cell; infinite where nobody sees such a move, or for no direction.
 ///
 /// It is the extent of a viewpoint of the cell, and no other viewpoint has a smaller one but for rounding: up to some
 /// 1e-9 of it. Positions should have magnitudes near 1. Cost: less than a microsecond for each face and edge.

@@ -26,7 +26,7 @@ pub fn angle_from(viewpoint: DVec3, point: DVec3, moved: DVec3) -> f64 {
     atan2(length(a.cross(shift)), a.dot(b))
 }
 
-/// How far `point` may move along the unit vector `direction` before `viewpoint` sees it move by more than the
+/// Distance that `point` may move along the unit vector `direction` before `viewpoint` sees it move by more than the
 /// aperture; infinite where it never does, 0 where the viewpoint is the point.
 #[must_use]
 pub fn extent_from(viewpoint: DVec3, point: DVec3, direction: DVec3, aperture: Aperture) -> f64 {

@@ -9,7 +9,7 @@ use crate::num::math;
 pub struct HalfSpace {
     /// Unit normal, out of the half-space.
     pub normal: DVec3,
-    /// Where the plane is along the normal.
+    /// Offset of the plane along the normal.
     pub offset: f64,
 }
 
@@ -24,7 +24,7 @@ impl HalfSpace {
         })
     }
 
-    /// How far `p` is outside; negative inside.
+    /// Distance of `p` from the half-space; negative inside.
     #[inline]
     #[must_use]
     pub fn excess(&self, p: DVec3) -> f64 {

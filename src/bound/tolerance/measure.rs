@@ -1,4 +1,4 @@
-//! How far new faces are from the old ones (section 2.2).
+//! The deviation of new faces from the old ones (section 2.2).
 //!
 //! Every new triangle is cut by the walls of every column; the height over the old triangle is linear in a piece, so its
 //! corners have the largest. Deviation: at convex edges there are gaps between columns where the published measure sees

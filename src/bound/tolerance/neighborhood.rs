@@ -1,4 +1,4 @@
-//! What lies around a collapsing edge, as tolerance volumes see it.
+//! The faces around a collapsing edge, as tolerance volumes see them.
 //!
 //! Coordinates are relative to the edge's midpoint, so that plane offsets do not cancel.
 
@@ -11,7 +11,7 @@ use super::{HalfSpace, Prism};
 pub struct OldFace {
     /// Its corners, counter-clockwise seen from outside.
     pub points: [DVec3; 3],
-    /// Which of them are ends of the edge: one (a boundary triangle) or two (an internal one).
+    /// The ends of the edge among them: one (a boundary triangle) or two (an internal one).
     pub ends: [bool; 3],
 }
 
@@ -56,7 +56,7 @@ impl Neighborhood {
         Some(own)
     }
 
-    /// What coordinates are relative to.
+    /// The point that coordinates are relative to.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin

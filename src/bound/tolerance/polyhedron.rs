@@ -67,7 +67,7 @@ impl Polyhedron {
         self.bounds().all(|b| b.excess(p) <= tolerance)
     }
 
-    /// What is left of it in a half-space; `None` where that is no more than `tolerance` thick there.
+    /// The part of it in a half-space; `None` where that is no more than `tolerance` thick there.
     #[must_use]
     pub fn cut(&self, by: HalfSpace, tolerance: f64) -> Option<Self> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -171,7 +171,7 @@ impl Polyhedron {
         six / 6.0
     }
 
-    /// Where a convex function is least in it, and its value there.
+    /// The point of it at which a convex function is least, and the value there.
     #[must_use]
     pub fn minimum(&self, of: &Quadratic, tolerance: f64) -> Option<(DVec3, f64)> {
         if let Some(v) = of.minimum()

@@ -20,7 +20,7 @@ impl Quadratic {
         0.5 * v.dot(self.matrix.times(v)) + self.linear.dot(v)
     }
 
-    /// Where it is least; `None` where `H` is singular but for rounding.
+    /// The point at which it is least; `None` where `H` is singular but for rounding.
     #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
         let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.matrix.times(axis));
@@ -35,7 +35,7 @@ impl Quadratic {
         v.is_finite().then_some(v)
     }
 
-    /// Where it is least on the plane through `point` across `normal`; `None` where that is not one place.
+    /// The point of the plane through `point` across `normal` at which it is least; `None` where that is not one.
     #[must_use]
     pub fn minimum_on_plane(&self, point: DVec3, normal: DVec3) -> Option<DVec3> {
         let axis = if normal.x.abs() <= normal.y.abs() && normal.x.abs() <= normal.z.abs() {
@@ -61,7 +61,7 @@ impl Quadratic {
         v.is_finite().then_some(v)
     }
 
-    /// Where it is least between two points.
+    /// The point between two at which it is least.
     #[must_use]
     pub fn minimum_between(&self, from: DVec3, to: DVec3) -> DVec3 {
         let d = to - from;

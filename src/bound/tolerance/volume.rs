@@ -24,7 +24,7 @@ pub enum Source {
     Vertices,
 }
 
-/// Where a new vertex may lie; relative to the neighbourhood's origin.
+/// The places that a new vertex may have; relative to the neighbourhood's origin.
 #[derive(Clone, Debug, Default)]
 pub struct Volume {
     cells: Vec<Polyhedron>,
@@ -80,7 +80,8 @@ impl Volume {
         self.cells.iter().any(|c| c.contains(p, self.tolerance))
     }
 
-    /// Where a convex function is least in the volume, relative to the neighbourhood's origin; the first cell on a tie.
+    /// The point of the volume at which a convex function is least, relative to the neighbourhood's origin; that of the
+    /// first polyhedron on a tie.
     #[must_use]
     pub fn minimum(&self, of: &Quadratic) -> Option<DVec3> {
         let mut best: Option<(DVec3, f64)> = None;

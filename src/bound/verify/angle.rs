@@ -1,6 +1,6 @@
 //! Checks the claim that no viewer in a cell sees a point of the original and what stands for it under more than an angle.
 //!
-//! What stands for what is read from a [`Record`], and three things are checked: that the pieces of every original
+//! Replacements are read from a [`Record`], and three things are checked: that the pieces of every original
 //! triangle leave nothing of it out, in whole numbers; for every piece the largest angle for all its points and all
 //! viewpoints, from below and above, as near as it takes to know the largest one of all to a five-hundredth and
 //! whether it is above the claim; and, as a check of that, the angle at points spread over the original, from every corner
@@ -15,11 +15,12 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{
-    angle_tally::{Found, Seen},
+    angle_tally::{AngleTally, FrameSighting},
     gaps::Gap,
     nearest::Facets,
+    piece_bounds::PieceBounds,
     record::{ONE, Record},
-    samples::{Spot, Spread},
+    samples::{Sample, Samples},
     viewpoints::{Viewpoints, angle, tangent2},
 };
 use crate::{
@@ -42,7 +43,7 @@ const SLACK: [f64; 2] = [1e-8, 1e-10];
 const VIEWPOINTS: u64 = 2;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// What was checked.
+/// The property that was checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Property {
@@ -59,24 +60,24 @@ pub struct Sighting {
     pub triangle: u32,
     /// The point in file units.
     pub point: [f64; 3],
-    /// What stands for it.
+    /// Its replacement.
     pub replacement: [f64; 3],
-    /// Where the viewer is.
+    /// The place of the viewer.
     pub viewpoint: [f64; 3],
     /// The angle between the two, in degrees.
     pub angle_deg: f64,
 }
 
-/// What the check found.
+/// The result of [`angles`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AngleReport {
     /// The claim in degrees.
     pub claimed_deg: f64,
-    /// What was checked.
+    /// The property that was checked.
     pub property: Property,
     /// Pairs of a point and a viewpoint that were measured.
     pub sightings: u64,
-    /// How many of them are seen under more than the claim.
+    /// Number of them that are seen under more than the claim.
     pub violations: u64,
     /// The largest angle: with a record, the largest one of all up to a five-hundredth where `at_most_deg` says so.
     pub worst: Option<Sighting>,
@@ -128,91 +129,28 @@ pub fn angles(
             "the correspondence belongs to other meshes than these",
         ));
     }
-    let coarse = Frame::for_size(low.abs().max(high.abs()).max_element());
-    let size = length(coarse.enter(high) - coarse.enter(low));
-    let is_far = size > 0.0 && FAR * size < 1.0;
-    let frame = Frame {
-        exponent: coarse.exponent
-            + if is_far {
-                Frame::for_size(size).exponent
-            } else {
-                0
-            },
-    };
-    let (low, high) = (frame.enter(low), frame.enter(high));
-    // Rounds nothing: coordinates that are alike in all but the last bits.
-    let shift = if is_far { low } else { DVec3::ZERO };
-    let corners = |mesh: &Mesh| -> Vec<[DVec3; 3]> {
-        let all = 0..mesh.triangles().len();
-        all.map(|t| mesh.corners(t).map(|p| frame.enter(p) - shift))
-            .collect()
-    };
-    let (low, high) = (low - shift, high - shift);
-    let limit = degrees * DEGREE;
-    let tangent = sin(limit) / cos(limit) * (1.0 + SLACK[0]) + SLACK[1];
+    let (frame, shift) = frame_near(low, high);
     let check = Check {
-        originals: corners(original),
-        targets: corners(simplified),
+        originals: corners_of(original, frame, shift),
+        targets: corners_of(simplified, frame, shift),
         viewpoints: Viewpoints::new(
             &cell.enter_frame(frame).relative_to(shift),
-            (low + high) * 0.5,
-            length(high - low),
+            ((frame.enter(low) - shift) + (frame.enter(high) - shift)) * 0.5,
+            length((frame.enter(high) - shift) - (frame.enter(low) - shift)),
         ),
-        limit2: tangent * tangent,
+        limit2: tangent_limit(degrees) * tangent_limit(degrees),
         record,
     };
-    // Squares of squares must be numbers.
-    let mut all = check
-        .targets
-        .iter()
-        .flatten()
-        .chain(&check.viewpoints.corners);
-    if !all.all(|p| p.abs().max_element() <= LARGEST) {
-        return Err(Error::input(
-            "-",
-            "the simplified mesh or the cell is 10^60 times as large or as far away as the original; check the units of all",
-        ));
-    }
-    let mut found = Found::default();
-    let mapped = match record {
-        Some(record) => Some(check.mapped(record, &mut found, progress)?),
+    check.require_numbers()?;
+    let mut tally = AngleTally::default();
+    let bounds = match record {
+        Some(record) => Some(check.piece_bounds(record, &mut tally, progress)?),
         None => None,
     };
-    check.sample(samples, &mut found, progress)?;
-    let worst = found.worst.map(|w| Sighting {
-        triangle: w.triangle,
-        point: frame.leave(w.point + shift).to_array(),
-        replacement: frame.leave(w.replacement + shift).to_array(),
-        viewpoint: frame.leave(w.viewpoint + shift).to_array(),
-        angle_deg: angle(w.point, w.replacement, w.viewpoint) / DEGREE,
-    });
-    let gap = mapped.as_ref().and_then(|m| m.gap);
-    let within = found.worst.is_none_or(|w| w.tangent2 <= check.limit2);
-    Ok(AngleReport {
-        claimed_deg: degrees,
-        property: match record {
-            Some(_) => Property::Correspondence,
-            None => Property::NearestInAngle,
-        },
-        sightings: found.sightings,
-        violations: found.violations,
-        worst,
-        pieces: record.map(Record::piece_count),
-        gap,
-        at_most_deg: match &mapped {
-            Some(m) if m.at_most2.is_finite() => Some(atan2(sqrt(m.at_most2), 1.0) / DEGREE),
-            _ => None,
-        },
-        undecided_area: mapped.as_ref().map_or(1.0, |m| m.undecided),
-        part_of_cell: match &mapped {
-            Some(m) => m.partial,
-            None => check.viewpoints.end.is_some(),
-        },
-        holds: within && gap.is_none(),
-        proven: within
-            && gap.is_none()
-            && mapped.is_some_and(|m| !m.partial && m.at_most2 <= check.limit2),
-    })
+    check.sample(samples, &mut tally, progress)?;
+    Ok(check.report(degrees, &tally, bounds.as_ref(), |p| {
+        frame.leave(p + shift).to_array()
+    }))
 }
 
 /// Sizes of the original from the origin on which it is far away.
@@ -220,6 +158,34 @@ const FAR: f64 = 512.0;
 /// Largest coordinate of a mesh or cell, in sizes of the original.
 const LARGEST: f64 = 1e60;
 
+/// A frame for a box, and a point of that frame which positions are taken relative to: the box's corner where it is far
+/// from the origin for its size, which rounds nothing (coordinates are alike in all but the last bits).
+fn frame_near(low: DVec3, high: DVec3) -> (Frame, DVec3) {
+    let coarse = Frame::for_size(low.abs().max(high.abs()).max_element());
+    let size = length(coarse.enter(high) - coarse.enter(low));
+    if size > 0.0 && FAR * size < 1.0 {
+        let exponent = coarse.exponent + Frame::for_size(size).exponent;
+        let frame = Frame { exponent };
+        (frame, frame.enter(low))
+    } else {
+        (coarse, DVec3::ZERO)
+    }
+}
+
+/// The triangles of a mesh in units of `frame`, relative to `shift`.
+fn corners_of(mesh: &Mesh, frame: Frame, shift: DVec3) -> Vec<[DVec3; 3]> {
+    let all = 0..mesh.triangles().len();
+    all.map(|t| mesh.corners(t).map(|p| frame.enter(p) - shift))
+        .collect()
+}
+
+/// The tangent up to which an angle keeps the claim.
+fn tangent_limit(degrees: f64) -> f64 {
+    let limit = degrees * DEGREE;
+    sin(limit) / cos(limit) * (1.0 + SLACK[0]) + SLACK[1]
+}
+
+/// A claim and the surfaces and viewpoints that it is about, in frame units.
 pub(super) struct Check<'a> {
     pub(super) originals: Vec<[DVec3; 3]>,
     pub(super) targets: Vec<[DVec3; 3]>,
@@ -230,19 +196,74 @@ pub(super) struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn sample(&self, samples: u64, found: &mut Found, progress: &dyn Progress) -> Result<()> {
-        let spread = Spread::new(&self.originals, samples);
+    /// Refuses coordinates of which the squares of squares are no numbers.
+    fn require_numbers(&self) -> Result<()> {
+        let mut all = self
+            .targets
+            .iter()
+            .flatten()
+            .chain(&self.viewpoints.corners);
+        if all.all(|p| p.abs().max_element() <= LARGEST) {
+            return Ok(());
+        }
+        Err(Error::input(
+            "-",
+            "the simplified mesh or the cell is 10^60 times as large or as far away as the original; check the units of all",
+        ))
+    }
+
+    /// The report of what was measured and bounded; `leave` takes a position to file units.
+    fn report(
+        &self,
+        claimed_deg: f64,
+        tally: &AngleTally,
+        bounds: Option<&PieceBounds>,
+        leave: impl Fn(DVec3) -> [f64; 3],
+    ) -> AngleReport {
+        let gap = bounds.and_then(|b| b.gap);
+        let within = tally.worst.is_none_or(|w| w.tangent2 <= self.limit2);
+        AngleReport {
+            claimed_deg,
+            property: match self.record {
+                Some(_) => Property::Correspondence,
+                None => Property::NearestInAngle,
+            },
+            sightings: tally.sightings,
+            violations: tally.violations,
+            worst: tally.worst.map(|w| Sighting {
+                triangle: w.triangle,
+                point: leave(w.point),
+                replacement: leave(w.replacement),
+                viewpoint: leave(w.viewpoint),
+                angle_deg: angle(w.point, w.replacement, w.viewpoint) / DEGREE,
+            }),
+            pieces: self.record.map(Record::piece_count),
+            gap,
+            at_most_deg: bounds
+                .filter(|b| b.at_most2.is_finite())
+                .map(|b| atan2(sqrt(b.at_most2), 1.0) / DEGREE),
+            undecided_area: bounds.map_or(1.0, |b| b.undecided),
+            part_of_cell: bounds.map_or(self.viewpoints.end.is_some(), |b| b.partial),
+            holds: within && gap.is_none(),
+            proven: within
+                && gap.is_none()
+                && bounds.is_some_and(|b| !b.partial && b.at_most2 <= self.limit2),
+        }
+    }
+
+    fn sample(&self, samples: u64, found: &mut AngleTally, progress: &dyn Progress) -> Result<()> {
+        let plan = Samples::new(&self.originals, samples);
         let facets = Facets::new(&self.targets);
-        let chunks = spread.len().div_ceil(CHUNK);
+        let chunks = plan.len().div_ceil(CHUNK);
         for start in (0..chunks).step_by(GROUP) {
             progress.step("sample angles", start, chunks)?;
             let group = parallel::map((chunks - start).min(GROUP as u64) as usize, |i| {
-                let mut own = Found::default();
+                let mut own = AngleTally::default();
                 let (mut k, mut near, mut corners) = ((start + i as u64) * CHUNK, 0, Vec::new());
-                spread.visit(k..spread.len().min(k + CHUNK), |spot| {
+                plan.visit(k..plan.len().min(k + CHUNK), |sample| {
                     match self.record {
-                        Some(record) => self.follow(record, spot, k, &mut corners, &mut own),
-                        None => near = self.look(&facets, spot, k, near, &mut own),
+                        Some(record) => self.follow(record, sample, k, &mut corners, &mut own),
+                        None => near = self.look(&facets, sample, k, near, &mut own),
                     }
                     k += 1;
                 });
@@ -265,12 +286,12 @@ impl Check<'_> {
     fn follow(
         &self,
         record: &Record,
-        spot: Spot,
+        sample: Sample,
         k: u64,
         corners: &mut Vec<[DVec3; 2]>,
-        found: &mut Found,
+        found: &mut AngleTally,
     ) {
-        let [_, u, v] = spot.weights.map(|w| w * f64::from(ONE));
+        let [_, u, v] = sample.weights.map(|w| w * f64::from(ONE));
         let depth = |piece: u32| {
             let all = record.piece(piece).1;
             let n = all.len();
@@ -281,7 +302,7 @@ impl Check<'_> {
             })
         };
         let mut best: Option<(f64, u32)> = None;
-        for piece in record.of(spot.triangle) {
+        for piece in record.of(sample.triangle) {
             let d = depth(piece);
             if best.is_none_or(|(most, _)| d > most) {
                 best = Some((d, piece));
@@ -292,7 +313,7 @@ impl Check<'_> {
         }
         let Some((_, piece)) = best else { return };
         let (_, all) = record.piece(piece);
-        self.load(record, spot.triangle, piece, corners);
+        self.load(record, sample.triangle, piece, corners);
         // The triangle from the first corner that holds the sample, or comes nearest to that.
         let mut inside: Option<(f64, usize, [f64; 3])> = None;
         for i in 2..all.len() {
@@ -314,9 +335,9 @@ impl Check<'_> {
         let [point, replacement] =
             [0, 1].map(|k| three[0][k] * w[0] + three[1][k] * w[1] + three[2][k] * w[2]);
         for viewpoint in self.viewpoints_of(k) {
-            let seen = Seen {
+            let seen = FrameSighting {
                 tangent2: tangent2(point, replacement, viewpoint),
-                triangle: spot.triangle,
+                triangle: sample.triangle,
                 point,
                 replacement,
                 viewpoint,
@@ -326,8 +347,15 @@ impl Check<'_> {
     }
 
     /// Measures a sample against the point of the simplified surface that is nearest to it in angle.
-    fn look(&self, facets: &Facets, spot: Spot, k: u64, near: u32, found: &mut Found) -> u32 {
-        let point = spot.point(self.originals[spot.triangle as usize]);
+    fn look(
+        &self,
+        facets: &Facets,
+        sample: Sample,
+        k: u64,
+        near: u32,
+        found: &mut AngleTally,
+    ) -> u32 {
+        let point = sample.point(self.originals[sample.triangle as usize]);
         let (_, near) = facets.nearest(point, near, 0.0);
         let nearest = facets.facet(near).nearest_point(point);
         for viewpoint in self.viewpoints_of(k) {
@@ -335,9 +363,9 @@ impl Check<'_> {
             if tangent2(point, nearest, viewpoint) > self.limit2 {
                 replacement = facets.nearest_in_angle(viewpoint, point, nearest);
             }
-            let seen = Seen {
+            let seen = FrameSighting {
                 tangent2: tangent2(point, replacement, viewpoint),
-                triangle: spot.triangle,
+                triangle: sample.triangle,
                 point,
                 replacement,
                 viewpoint,

@@ -15,13 +15,13 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec3;
 
-use super::{angle_tally::Seen, cell_contact::sights_at_meeting};
+use super::{angle_tally::FrameSighting, cell_contact::sights_at_contact};
 
-/// How near an upper bound must come to what is attained: a share of the tangent.
+/// Largest excess of an upper bound over the angle attained, as a share of the tangent.
 const NEAR: f64 = 0.002;
 /// The same for squares.
 const NEAR2: f64 = (1.0 + NEAR) * (1.0 + NEAR);
-/// How near the squares must come where the claim lies between them.
+/// Largest ratio of the squares of upper and lower bound where the claim lies between them.
 const DECIDED2: f64 = 1.0 + 2e-6;
 /// Halvings for one piece; what is not settled then touches the cell or comes very near.
 const HALVINGS: usize = 1 << 12;
@@ -62,7 +62,7 @@ impl Ord for Part {
     }
 }
 
-/// What is wanted of a piece.
+/// The closeness that is wanted of the bounds of a piece.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted {
     /// Square of the tangent that is claimed.
@@ -81,7 +81,7 @@ impl Wanted {
 }
 
 /// A first bound of a piece for all simplices of viewpoints, and the largest angle between corners in `seen`.
-pub(super) fn first(corners: &[[DVec3; 2]], cell: &[Vec<DVec3>], seen: &mut Seen) -> f64 {
+pub(super) fn first(corners: &[[DVec3; 2]], cell: &[Vec<DVec3>], seen: &mut FrameSighting) -> f64 {
     if corners.iter().all(|[p, s]| p == s) {
         return 0.0;
     }
@@ -97,7 +97,7 @@ pub(super) fn refine(
     corners: &[[DVec3; 2]],
     cell: &[Vec<DVec3>],
     wanted: Wanted,
-    seen: &mut Seen,
+    seen: &mut FrameSighting,
 ) -> f64 {
     let mut open = BinaryHeap::new();
     let mut number = 0;
@@ -113,7 +113,7 @@ pub(super) fn refine(
     for viewers in cell {
         look(corners, viewers, seen);
         if bound2(corners, viewers) == f64::INFINITY {
-            look_at_meeting(corners, viewers, seen);
+            look_at_contact(corners, viewers, seen);
         }
         add(&mut open, corners.to_vec(), viewers.clone());
     }
@@ -162,7 +162,7 @@ pub(super) fn refine(
 }
 
 /// Measures the corners and their mean from the corners of a simplex of viewpoints and its middle.
-fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
+fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut FrameSighting) {
     let middle = mean(viewers, |v| *v);
     for &viewpoint in viewers.iter().chain([&middle]) {
         for &[p, s] in corners {
@@ -175,12 +175,12 @@ fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
 }
 
 /// Measures where viewpoints are on the triangles of a piece, or on those that stand for them.
-fn look_at_meeting(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut Seen) {
+fn look_at_contact(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut FrameSighting) {
     for i in 2..corners.len() {
         let three = [corners[0], corners[i - 1], corners[i]];
         let turned = three.map(|[p, s]| [s, p]);
-        let turned = sights_at_meeting(turned, viewers).map(|([s, p], v)| ([p, s], v));
-        for ([point, replacement], viewpoint) in sights_at_meeting(three, viewers).chain(turned) {
+        let turned = sights_at_contact(turned, viewers).map(|([s, p], v)| ([p, s], v));
+        for ([point, replacement], viewpoint) in sights_at_contact(three, viewers).chain(turned) {
             seen.look(point, replacement, viewpoint);
         }
     }
@@ -284,7 +284,7 @@ mod tests {
             let cell: Vec<Vec<DVec3>> = (0..2)
                 .map(|_| (0..1 + case % 4).map(|_| eye + vector(1.0)).collect())
                 .collect();
-            let mut seen = Seen {
+            let mut seen = FrameSighting {
                 tangent2: 0.0,
                 triangle: 0,
                 point: DVec3::ZERO,

@@ -1,4 +1,4 @@
-//! What viewers saw of pieces and what stands for them: how much in all, and the worst.
+//! A tally of measured angles between points and their replacements: their number, the violations, and the worst.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::viewpoints::tangent2;
 
 /// A sighting in frame units.
 #[derive(Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct FrameSighting {
     pub(super) tangent2: f64,
     pub(super) triangle: u32,
     pub(super) point: DVec3,
@@ -14,7 +14,7 @@ pub(super) struct Seen {
     pub(super) viewpoint: DVec3,
 }
 
-impl Seen {
+impl FrameSighting {
     /// Looks at another pair of points of the same triangle: the larger angle stays.
     pub(super) fn look(&mut self, point: DVec3, replacement: DVec3, viewpoint: DVec3) {
         let tangent2 = tangent2(point, replacement, viewpoint);
@@ -30,15 +30,17 @@ impl Seen {
     }
 }
 
+/// The number of measured angles, of those above the claim, and the largest one.
 #[derive(Default)]
-pub(super) struct Found {
-    pub(super) worst: Option<Seen>,
+pub(super) struct AngleTally {
+    pub(super) worst: Option<FrameSighting>,
     pub(super) sightings: u64,
     pub(super) violations: u64,
 }
 
-impl Found {
-    pub(super) fn see(&mut self, seen: Seen, limit2: f64) {
+impl AngleTally {
+    /// Counts one measured angle.
+    pub(super) fn see(&mut self, seen: FrameSighting, limit2: f64) {
         self.sightings += 1;
         self.violations += u64::from(seen.tangent2 > limit2);
         if self.worst.is_none_or(|w| seen.tangent2 > w.tangent2) {
@@ -46,6 +48,7 @@ impl Found {
         }
     }
 
+    /// Adds another tally; of equally large angles the first stays.
     pub(super) fn add(&mut self, other: &Self) {
         self.sightings += other.sightings;
         self.violations += other.violations;

@@ -1,16 +1,16 @@
-//! Where a part of a view cell meets a part of a surface: whoever is there sees a point in every direction, and so what
-//! stands for it under any angle.
+//! Contact of a view cell with a surface: a viewer who stands on a point of it sees that point in every direction, so that
+//! the angle to its replacement may be any up to pi.
 
 use glam::DVec3;
 
 use crate::num::math::length;
 
-/// How far from the meeting a point is looked at, in displacements: near enough for angles next to 90 degrees.
+/// Distance from the contact at which points are measured, in displacements: near enough for angles next to 90 degrees.
 const NEAR: f64 = 1e-6;
 
 /// The weights of a point of a triangle, and a viewpoint in the hull of one to four that is there up to rounding; `None`
 /// where there is none. Both are where they are said to be even where a needle makes them lie apart.
-fn meeting(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<([f64; 3], DVec3)> {
+fn contact(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<([f64; 3], DVec3)> {
     let [a, b, c] = triangle;
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
@@ -100,12 +100,12 @@ fn middle_inside(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<DVec3> {
     (!left.is_empty() && point.is_finite()).then_some(point)
 }
 
-/// Points next to the meeting of a triangle with viewpoints, what stands for them, and the viewpoint there.
-pub(super) fn sights_at_meeting(
+/// Points next to the contact of a triangle with viewpoints, what stands for them, and the viewpoint there.
+pub(super) fn sights_at_contact(
     corners: [[DVec3; 2]; 3],
     viewers: &[DVec3],
 ) -> impl Iterator<Item = ([DVec3; 2], DVec3)> {
-    let found = meeting(corners.map(|[p, _]| p), viewers);
+    let found = contact(corners.map(|[p, _]| p), viewers);
     found.into_iter().flat_map(move |(weights, viewpoint)| {
         let mixed = |k: usize| {
             corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]

@@ -2,8 +2,8 @@
 //!
 //! By samples: points spread over each surface, along its edges, and its vertices, each with its distance to the other
 //! surface. And by proof: every triangle is cut until it is certain that it lies within the distance, or a point of it
-//! does not ([`super::distance_bound`]). A claim is broken only by a point that was measured; where neither holds, the report says
-//! what part of the surface is undecided, and the distance that is proven. Distances are Euclidean, computed in a
+//! does not ([`super::distance_bound`]). A claim is broken only by a point that was measured; where neither holds, the report
+//! says what part of the surface is undecided, and the distance that is proven. Distances are Euclidean, computed in a
 //! frame scaled to the reference; a measured distance breaks a claim where it is larger by a billionth and by 2e-10 of the
 //! reference's diagonal, far above rounding. The same result for any number of threads.
 
@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{
     distance_bound,
     nearest::Facets,
-    samples::{Spot, Spread},
+    samples::{Sample, Samples},
 };
 use crate::{
     Error, Progress, Result,
@@ -34,7 +34,7 @@ const GROUP: usize = 256;
 /// Beyond rounding: relative to the claim, and relative to the diagonal.
 const SLACK: [f64; 2] = [1e-9, 2e-10];
 
-/// How far apart two surfaces are said to be at most.
+/// A claimed distance between two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Claim {
@@ -55,19 +55,20 @@ pub struct Witness {
     pub distance: f64,
 }
 
-/// What was found on the way from one surface to the other.
+/// The distances measured and proven from one surface to the other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Direction {
     /// The surface whose points were measured: `reference` or `simplified`.
     pub from: &'static str,
     /// Points measured, those of the proof not counted.
     pub samples: u64,
-    /// How many of them are farther away than claimed.
+    /// Number of them that are farther away than claimed.
     pub violations: u64,
     /// The point with the largest distance; the first of equals.
     pub farthest: Witness,
-    /// No point is farther away than this, in file units.
-    pub proven: f64,
+    /// No point is farther away than this, in file units: proven.
+    #[serde(rename = "proven")]
+    pub upper_bound: f64,
     /// The share of the area for which the claim is not proven, in [0, 1].
     pub undecided_area: f64,
     /// The claim holds as far as anybody knows: no point breaks it.
@@ -76,7 +77,7 @@ pub struct Direction {
     pub is_proven: bool,
 }
 
-/// What the check found.
+/// The result of [`distance`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceReport {
     /// The claim in file units.
@@ -226,25 +227,25 @@ impl Check<'_> {
         progress: &dyn Progress,
     ) -> Result<Direction> {
         let mut worst = Worst::NONE;
-        let spread = Spread::new(&self.from.corners, samples);
-        let violations = self.sample(name, &spread, &mut worst, progress)?;
-        let (proven, undecided) = self.prove(name, &mut worst, progress)?;
+        let plan = Samples::new(&self.from.corners, samples);
+        let violations = self.sample(name, &plan, &mut worst, progress)?;
+        let (at_most, undecided) = self.prove(name, &mut worst, progress)?;
         let total: f64 = self.from.corners.iter().map(double_area).sum();
         let farthest = sqrt(worst.squared);
         let share = if total > 0.0 { undecided / total } else { 0.0 };
         Ok(Direction {
             from: name,
-            samples: spread.len(),
+            samples: plan.len(),
             violations,
             farthest: Witness {
                 triangle: worst.triangle,
                 point: frame.leave(worst.point).to_array(),
                 distance: frame.leave_length(farthest, 1),
             },
-            proven: frame.leave_length(proven.max(farthest), 1),
+            upper_bound: frame.leave_length(at_most.max(farthest), 1),
             undecided_area: share.min(1.0),
             holds: farthest <= self.most,
-            is_proven: proven.max(farthest) <= self.most,
+            is_proven: at_most.max(farthest) <= self.most,
         })
     }
 
@@ -252,11 +253,11 @@ impl Check<'_> {
     fn sample(
         &self,
         name: &str,
-        spread: &Spread,
+        plan: &Samples,
         worst: &mut Worst,
         progress: &dyn Progress,
     ) -> Result<u64> {
-        let chunks = spread.len().div_ceil(CHUNK);
+        let chunks = plan.len().div_ceil(CHUNK);
         let limit = self.most * self.most;
         let mut violations = 0;
         for start in (0..chunks).step_by(GROUP) {
@@ -265,7 +266,7 @@ impl Check<'_> {
             let known = worst.squared.min(limit);
             let in_group = (chunks - start).min(GROUP as u64) as usize;
             let group = parallel::map(in_group, |i| {
-                self.sample_chunk(spread, start + i as u64, known)
+                self.sample_chunk(plan, start + i as u64, known)
             });
             for (other, count) in group {
                 worst.take(other);
@@ -275,21 +276,21 @@ impl Check<'_> {
         Ok(violations)
     }
 
-    fn sample_chunk(&self, spread: &Spread, chunk: u64, known: f64) -> (Worst, u64) {
+    fn sample_chunk(&self, plan: &Samples, chunk: u64, known: f64) -> (Worst, u64) {
         let limit = self.most * self.most;
         let (mut worst, mut count, mut near) = (Worst::NONE, 0, 0);
         let mut enough = known;
-        spread.visit(
-            chunk * CHUNK..spread.len().min((chunk + 1) * CHUNK),
-            |spot: Spot| {
-                let point = spot.point(self.from.corners[spot.triangle as usize]);
+        plan.visit(
+            chunk * CHUNK..plan.len().min((chunk + 1) * CHUNK),
+            |sample: Sample| {
+                let point = sample.point(self.from.corners[sample.triangle as usize]);
                 let squared;
                 (squared, near) = self.to.facets.nearest(point, near, enough);
                 count += u64::from(squared > limit);
                 if squared > enough || worst.squared < 0.0 {
                     worst.take(Worst {
                         squared,
-                        triangle: spot.triangle,
+                        triangle: sample.triangle,
                         point,
                     });
                     enough = enough.max(squared.min(limit));

@@ -19,9 +19,9 @@ const ROUNDS: [(usize, f64); 2] = [
     (1 << 12, 1.0 / (1_u64 << 30) as f64),
 ];
 
-/// What is known about a triangle, in frame units.
+/// Bounds of the largest distance of a triangle, in frame units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Finding {
+pub(super) struct DistanceBound {
     /// The largest distance met, at `point`: a lower bound of the largest one.
     pub(super) largest: f64,
     pub(super) point: DVec3,
@@ -37,8 +37,13 @@ pub(super) struct Finding {
 type Part = ([DVec3; 3], f64);
 
 /// Settles whether all of a triangle is within `claim` of the surface.
-pub(super) fn settle(surface: &Facets, corners: [DVec3; 3], claim: f64, guess: u32) -> Finding {
-    let mut finding = Finding {
+pub(super) fn settle(
+    surface: &Facets,
+    corners: [DVec3; 3],
+    claim: f64,
+    guess: u32,
+) -> DistanceBound {
+    let mut finding = DistanceBound {
         largest: -1.0,
         point: corners[0],
         at_most: 0.0,
@@ -60,7 +65,7 @@ pub(super) fn settle(surface: &Facets, corners: [DVec3; 3], claim: f64, guess: u
     finding
 }
 
-impl Finding {
+impl DistanceBound {
     /// Divides the parts in `open`; those for which nothing is certain come into `left`.
     fn divide(
         &mut self,

@@ -1,4 +1,4 @@
-//! Whether the pieces of an original triangle cover all of it, in whole numbers and without a tolerance.
+//! Gaps between the pieces of an original triangle, found in whole numbers and without a tolerance.
 //!
 //! Corners are multiples of 2^-31 of the triangle's sides. Every side of a piece must be the side of another one in the
 //! opposite direction, bit for bit, or lie on a side of the triangle; and those must make up the whole side, counted by
@@ -10,7 +10,7 @@ use super::record::{ONE, Record};
 
 type Point = [u32; 2];
 
-/// What is wrong with the pieces of a triangle.
+/// The kind of gap that the pieces of a triangle leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Gap {
@@ -52,7 +52,7 @@ pub(super) fn check(record: &Record, triangle: u32) -> Option<Gap> {
     gap.then_some(Gap::Border)
 }
 
-/// How far along a side of the triangle a point lies on it.
+/// The place of a point along a side of the triangle that it lies on; `None` off that side.
 fn along(side: u32, [u, v]: Point) -> Option<u32> {
     match side {
         0 => (v == 0).then_some(u),

@@ -1,4 +1,4 @@
-//! All pieces of a record: whether they leave nothing out, and how large the angles are, at least and at most.
+//! Bounds of the angle for all pieces of a record, from below and above, and the check that they leave nothing out.
 //!
 //! First every piece gets a bound for the cell as a whole. Then those for which that is too far above the largest angle
 //! known, or on the other side of the claim than what was seen, get a closer one: the largest bound first, in groups that
@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::{
     angle::Check,
     angle_bound::{Wanted, first, refine},
-    angle_tally::{Found, Seen},
+    angle_tally::{AngleTally, FrameSighting},
     gaps::{self, Gap},
     record::{ONE, Record},
     viewpoints::tangent2,
@@ -21,8 +21,8 @@ const TRIANGLES: u32 = 64;
 const GROUP: u32 = 256;
 const CLOSER: usize = 512;
 
-/// What is known about all pieces.
-pub(super) struct Mapped {
+/// Bounds of the angle for all pieces together.
+pub(super) struct PieceBounds {
     /// The first triangle of which something is left out.
     pub(super) gap: Option<(u32, Gap)>,
     /// No viewer sees any point under an angle with a larger square of the tangent.
@@ -44,12 +44,13 @@ struct Bounded {
 }
 
 impl Check<'_> {
-    pub(super) fn mapped(
+    /// Bounds every piece, the largest angles closely; what is measured on the way goes into `found`.
+    pub(super) fn piece_bounds(
         &self,
         record: &Record,
-        found: &mut Found,
+        found: &mut AngleTally,
         progress: &dyn Progress,
-    ) -> Result<Mapped> {
+    ) -> Result<PieceBounds> {
         let count = self.originals.len() as u32;
         let tasks = count.div_ceil(TRIANGLES);
         let mut gap = None;
@@ -58,7 +59,7 @@ impl Check<'_> {
             progress.step("check the pieces", u64::from(start), u64::from(tasks))?;
             let in_group = (tasks - start).min(GROUP) as usize;
             let group = parallel::map(in_group, |i| {
-                let (mut own, mut wrong, mut bounds) = (Found::default(), None, Vec::new());
+                let (mut own, mut wrong, mut bounds) = (AngleTally::default(), None, Vec::new());
                 let first = (start + i as u32) * TRIANGLES;
                 for t in first..count.min(first + TRIANGLES) {
                     wrong = wrong.or_else(|| Some((t, gaps::check(record, t)?)));
@@ -86,7 +87,7 @@ impl Check<'_> {
         // A sum of nothing is -0 where it starts as one.
         let undecided = open.map(area).fold(0.0, |sum, x| sum + x);
         let total: f64 = self.originals.iter().copied().map(double_area).sum();
-        Ok(Mapped {
+        Ok(PieceBounds {
             gap,
             at_most2: all.iter().map(upper2).fold(0.0, f64::max),
             undecided: if total > 0.0 {
@@ -102,7 +103,7 @@ impl Check<'_> {
         &self,
         record: &Record,
         triangle: u32,
-        found: &mut Found,
+        found: &mut AngleTally,
         bounds: &mut Vec<Bounded>,
     ) {
         let mut corners = Vec::new();
@@ -126,7 +127,7 @@ impl Check<'_> {
     }
 
     /// A first sighting of a piece: from one of its own points, where a viewer may be there.
-    fn start(&self, triangle: u32, corners: &[[DVec3; 2]]) -> Seen {
+    fn start(&self, triangle: u32, corners: &[[DVec3; 2]]) -> FrameSighting {
         let within = corners
             .iter()
             .find(|[p, s]| p != s && self.viewpoints.holds(*p));
@@ -134,7 +135,7 @@ impl Check<'_> {
             Some(&at) => (at, at[0]),
             None => (corners[0], self.viewpoints.corners[0]),
         };
-        Seen {
+        FrameSighting {
             tangent2: tangent2(point, replacement, viewpoint),
             triangle,
             point,
@@ -147,10 +148,10 @@ impl Check<'_> {
         &self,
         record: &Record,
         all: &mut [Bounded],
-        found: &mut Found,
+        found: &mut AngleTally,
         progress: &dyn Progress,
     ) -> Result<()> {
-        let known2 = |found: &Found| found.worst.map_or(0.0, |w| w.tangent2);
+        let known2 = |found: &AngleTally| found.worst.map_or(0.0, |w| w.tangent2);
         let wanted = |known2| Wanted {
             claim2: self.limit2,
             known2,

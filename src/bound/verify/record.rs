@@ -18,7 +18,7 @@ const HEADER: usize = 8 + 4 + 64 + 8 + 8;
 /// The weight 1.
 pub(super) const ONE: u32 = 1 << 31;
 
-/// Which part of a simplified mesh stands for which part of the original.
+/// A map of the parts of an original to the parts of a simplified mesh that stand for them.
 #[derive(Clone, Debug)]
 pub struct Record {
     digests: [[u8; 32]; 2],

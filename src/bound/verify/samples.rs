@@ -21,20 +21,20 @@ fn term(k: u64, step: u64) -> f64 {
 
 /// A point of a surface: the triangle it lies in, and its weights there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spot {
+pub(super) struct Sample {
     pub(super) triangle: u32,
     pub(super) weights: [f64; 3],
 }
 
-impl Spot {
+impl Sample {
     pub(super) fn point(&self, [a, b, c]: [DVec3; 3]) -> DVec3 {
         a * self.weights[0] + b * self.weights[1] + c * self.weights[2]
     }
 }
 
-/// Which points: `inside` of them by area, then `along` by length, then the corners of all triangles.
+/// A plan of sample points: `inside` of them by area, then `along` by length, then the corners of all triangles.
 #[derive(Clone, Debug)]
-pub(super) struct Spread {
+pub(super) struct Samples {
     areas: Vec<f64>,
     sides: Vec<f64>,
     inside: u64,
@@ -42,7 +42,7 @@ pub(super) struct Spread {
     triangles: u64,
 }
 
-impl Spread {
+impl Samples {
     /// A plan for `samples` points: a ninth of them on edges. Surfaces without area have their corners only.
     pub(super) fn new(corners: &[[DVec3; 3]], samples: u64) -> Self {
         let (mut areas, mut sides) = (Vec::new(), Vec::new());
@@ -69,7 +69,7 @@ impl Spread {
     }
 
     /// Calls `visit` with every point of a range, in order.
-    pub(super) fn visit(&self, range: std::ops::Range<u64>, mut visit: impl FnMut(Spot)) {
+    pub(super) fn visit(&self, range: std::ops::Range<u64>, mut visit: impl FnMut(Sample)) {
         let mut at = None;
         for k in range {
             if k < self.inside {
@@ -80,7 +80,7 @@ impl Spread {
                 } else {
                     (u, v)
                 };
-                visit(Spot {
+                visit(Sample {
                     triangle: t,
                     weights: [1.0 - u - v, u, v],
                 });
@@ -101,7 +101,7 @@ impl Spread {
                 let mut weights = [0.0; 3];
                 weights[first] = 1.0 - s;
                 weights[(first + 1) % 3] = s;
-                visit(Spot {
+                visit(Sample {
                     triangle: t,
                     weights,
                 });
@@ -109,7 +109,7 @@ impl Spread {
                 let k = k - self.inside - self.along;
                 let mut weights = [0.0; 3];
                 weights[(k % 3) as usize] = 1.0;
-                visit(Spot {
+                visit(Sample {
                     triangle: (k / 3) as u32,
                     weights,
                 });

@@ -120,7 +120,7 @@ fn between(points: &[DVec3], corners: &[DVec3]) -> f64 {
     proved
 }
 
-/// What a unit direction proves: the points lie beyond the corners by at least `width`.
+/// A unit direction along which the points lie beyond the corners by at least `width`.
 struct Slab {
     /// Computed width less its rounding error; may be negative.
     width: f64,

@@ -17,14 +17,14 @@ use crate::{
 /// Most corners of a polygon or polyhedron: its hull is found by trying every triple.
 pub const CORNER_LIMIT: usize = 64;
 
-/// How far corners of one face may lie from its plane, as a fraction of the largest side of the cell's bounding box.
+/// Largest distance of the corners of a face from its plane, as a fraction of the largest side of the cell's box.
 pub(super) const FLATNESS: f64 = 1e-9;
 
 /// The viewpoints that a guarantee is given for: a convex set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewCell(Shape);
 
-/// What a [`ViewCell`] looks like. Unit vectors are unit vectors to the last few bits.
+/// The shape of a [`ViewCell`]. Unit vectors are unit vectors to the last few bits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// One viewpoint.
@@ -173,7 +173,7 @@ impl ViewCell {
         Ok(Self(Shape::HalfSpace { point, normal }))
     }
 
-    /// What it looks like.
+    /// The shape.
     #[must_use]
     pub fn shape(&self) -> &Shape {
         &self.0

@@ -110,14 +110,22 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
     }
     let frame = frame_for(&reference);
     let (own, other) = (reference.enter_frame(frame), low.enter_frame(frame));
-    let nearest = NearestTriangle::new(&other)
+    let nearest = NearestTriangle::new(other.in_frame_units())
         .ok_or_else(|| Error::Internal("a mesh with vertices has something near".into()))?;
     let effort = Effort {
         precision: options.precision,
         pieces: options.pieces,
     };
     let framed = cell.as_ref().map(|cell| cell.enter_frame(frame));
-    let measured = |measure| surface::measure(originals(&own), &nearest, measure, effort, terminal);
+    let measured = |measure| {
+        surface::measure(
+            originals(own.in_frame_units()),
+            &nearest,
+            measure,
+            effort,
+            terminal,
+        )
+    };
     let recorded = options.recorded(&reference, &low, frame)?;
     let mut found = None;
     if let Some(cell) = &framed {
@@ -126,9 +134,9 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
             Some(pairs) => surface::measure(pairs, &Given, angle, effort, terminal)?,
             None => measured(angle)?,
         };
-        let claims = options
-            .heuristics
-            .then(|| heuristics::claims(&own, &other, &nearest, cell));
+        let claims = options.heuristics.then(|| {
+            heuristics::claims(own.in_frame_units(), other.in_frame_units(), &nearest, cell)
+        });
         if let Some(folder) = &options.pictures {
             pictures::write(
                 folder,

@@ -12,7 +12,7 @@ use crate::{
     },
     cli::terminal::Terminal,
     encode::{atomic, png},
-    mesh::Mesh,
+    mesh::FramedMesh,
     metric::difference_strip,
     num::{
         Frame,
@@ -38,7 +38,7 @@ const NEAREST: f64 = 1e-6;
 pub(super) fn write(
     folder: &Path,
     size: u32,
-    meshes: [&Mesh; 2],
+    meshes: [&FramedMesh; 2],
     bound: &SurfaceBound,
     frame: Frame,
     terminal: &Terminal,
@@ -66,7 +66,7 @@ pub(super) fn write(
 }
 
 /// The whole scene around the worst point, and the point with what stands for it.
-fn views(size: u32, meshes: [&Mesh; 2], worst: &Worst, eye: DVec3) -> Result<ViewSet> {
+fn views(size: u32, meshes: [&FramedMesh; 2], worst: &Worst, eye: DVec3) -> Result<ViewSet> {
     let target = 0.5 * worst.point + 0.5 * worst.replacement;
     let at_eye = ViewCell::point(eye)?;
     let (mut near, mut far) = (f64::INFINITY, length(target - eye));

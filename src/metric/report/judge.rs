@@ -182,7 +182,11 @@ impl<'a> Judge<'a> {
             Some([set, _]) if self.options.silhouettes => {
                 let eyes: Vec<Eye> = set.views.iter().map(|view| view.eye).collect();
                 let framed = mesh.enter_frame(self.frame);
-                Some(silhouette_histogram(&framed, &eyes, progress)?)
+                Some(silhouette_histogram(
+                    framed.in_frame_units(),
+                    &eyes,
+                    progress,
+                )?)
             }
             _ => None,
         };

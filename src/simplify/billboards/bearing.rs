@@ -1,11 +1,11 @@
-//! How planes stand and along which direction the scene is projected on them: a grid, and the walls of the scene.
+//! Bearings of planes, and directions along which the scene is projected on them: a grid, and the walls of the scene.
 //!
 //! Slanted planes take faces that no plane across the direction of projection takes together, at the same bounds: a
 //! forest of 10,000 trees goes on an eighth fewer.
 
 use glam::DVec2;
 
-use super::{Limit, Options, plan::PlanFace};
+use super::{BillboardOptions, Limit, plan::PlanFace};
 use crate::num::math;
 
 /// Slants of planes of the grid to either side, beside none.
@@ -68,7 +68,7 @@ impl Bearing {
 }
 
 /// Half the steps of the grid.
-pub(super) fn half_steps(options: &Options) -> Turn {
+pub(super) fn half_steps(options: &BillboardOptions) -> Turn {
     Turn {
         whole: std::f64::consts::PI / f64::from(options.directions) / 2.0,
         slant: match options.limit {
@@ -80,7 +80,7 @@ pub(super) fn half_steps(options: &Options) -> Turn {
 
 /// The grid, then across two walls or more, those of most walls first and at most as many as there are directions. A
 /// distance knows no viewers and is shortest across, so that it has no slants.
-pub(super) fn grid(faces: &[PlanFace], options: &Options) -> Vec<Bearing> {
+pub(super) fn grid(faces: &[PlanFace], options: &BillboardOptions) -> Vec<Bearing> {
     let count = options.directions;
     let slants = match options.limit {
         Limit::Angle(_) => SLANTS,
@@ -128,9 +128,9 @@ mod tests {
     #[test]
     fn a_bearing_turns_into_planes_along_the_direction_or_a_distance_has_slants() {
         let aperture = Aperture::degrees(1.0).expect("below 90");
-        let options = Options {
+        let options = BillboardOptions {
             directions: 7,
-            ..Options::within(Limit::Angle(aperture))
+            ..BillboardOptions::within(Limit::Angle(aperture))
         };
         let bearings = grid(&[], &options);
         assert_eq!(bearings.len(), 7 * 9);
@@ -155,7 +155,7 @@ mod tests {
                 assert!(turned.normal.dot(turned.along) > 0.16);
             }
         }
-        let options = Options::within(Limit::Distance(0.1));
+        let options = BillboardOptions::within(Limit::Distance(0.1));
         let all_across = grid(&[], &options).iter().all(|b| b.normal == b.along);
         assert!(all_across && half_steps(&options).slant == 0.0);
     }

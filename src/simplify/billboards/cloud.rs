@@ -3,14 +3,15 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Displacement, Limit, Options, Quad,
+    BillboardOptions, Displacement, Limit, Quad,
     bearing::Bearing,
     error::{displacement, eyes},
     flat::{self, Level},
-    plan::{Plan, PlanCell, PlanFace},
+    plan::{Plan, PlanFace},
     quad::{project, texels},
     select::{Slab, select},
     tree::PlanTree,
+    viewers_in_plan::PlanCell,
 };
 use crate::{
     Progress, Result,
@@ -35,12 +36,12 @@ pub struct Cloud {
     pub displacement: Displacement,
 }
 
-/// What all quads have in common.
+/// The scene, cell and options that all quads have in common.
 struct Scene<'a> {
     mesh: &'a Mesh,
     cell: &'a ViewCell,
     plan_cell: PlanCell,
-    options: &'a Options,
+    options: &'a BillboardOptions,
 }
 
 /// Replaces a scene by quads for the viewers of `cell`. Planes, quads and textures depend on the mesh, the cell and the
@@ -52,7 +53,7 @@ struct Scene<'a> {
 pub fn billboards(
     mesh: &Mesh,
     cell: &ViewCell,
-    options: &Options,
+    options: &BillboardOptions,
     progress: &dyn Progress,
 ) -> Result<Cloud> {
     options.check()?;

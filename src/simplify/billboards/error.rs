@@ -1,9 +1,9 @@
-//! How far viewers see points displaced: across the horizon, exactly at every vertex, and up or down, from sampled
+//! The displacement of points that viewers see: across the horizon, exactly at every vertex, and up or down, from sampled
 //! viewpoints.
 
 use glam::{DVec2, DVec3};
 
-use super::{Quad, plan::PlanCell, plan::Up};
+use super::{Quad, plan::Up, viewers_in_plan::PlanCell};
 use crate::{
     bound::{planar::segment_error, view_cell::ViewCell},
     mesh::Mesh,
@@ -41,7 +41,7 @@ pub(super) fn eyes(mesh: &Mesh, cell: &ViewCell, up: Up) -> [f64; 2] {
     heights(cell.corners().unwrap_or(mesh.positions()))
 }
 
-/// What the vertices of the triangles that a quad replaces are displaced by.
+/// Measures the displacement of the vertices of the triangles that a quad replaces.
 pub(super) fn displacement(
     mesh: &Mesh,
     quad: &Quad,

@@ -18,9 +18,10 @@ mod quad;
 mod select;
 mod sweep;
 mod tree;
+mod viewers_in_plan;
 
 pub use cloud::{Cloud, billboards};
 pub use error::Displacement;
-pub use options::{Limit, Options};
+pub use options::{BillboardOptions, Limit};
 pub use plan::Up;
 pub use quad::{Quad, Texture};

@@ -1,4 +1,4 @@
-//! What a billboard cloud is asked for.
+//! Options of a billboard cloud.
 
 use super::Up;
 use crate::{Error, Result, bound::planar::Aperture};
@@ -6,7 +6,7 @@ use crate::{Error, Result, bound::planar::Aperture};
 /// Most directions of the grid.
 const DIRECTION_LIMIT: u32 = 4096;
 
-/// How far a point may be displaced.
+/// A limit on the displacement of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// So that no viewer of the cell sees it under more than an angle across the horizon.
@@ -16,12 +16,12 @@ pub enum Limit {
     Distance(f64),
 }
 
-/// What to make.
+/// Options of a billboard cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// How far a point may be displaced.
+pub struct BillboardOptions {
+    /// The limit on the displacement of points.
     pub limit: Limit,
-    /// Which axis points up.
+    /// The axis that points up.
     pub up: Up,
     /// Directions of the grid of planes over half a turn, 1 to 4096, where viewers bound the displacement each with nine
     /// directions of projection; planes along walls and between the directions of the grid are tried too.
@@ -32,7 +32,7 @@ pub struct Options {
     pub any_height: bool,
 }
 
-impl Options {
+impl BillboardOptions {
     /// Directions of the grid unless asked for others: 1 degree apart.
     pub const DIRECTIONS: u32 = 180;
     /// Most texels in a row or column unless asked for others.

@@ -43,13 +43,13 @@ impl Quad {
         [a, a + right, a + right + up, a + up]
     }
 
-    /// Where a point of the scene is shown.
+    /// The place on the quad at which a point of the scene is shown.
     #[must_use]
     pub fn project(&self, p: DVec3) -> DVec3 {
         project(p, self.corner, self.axes[2], self.along)
     }
 
-    /// What is drawn on it, seen along the direction of projection with a light at the viewer, as every picture of this
+    /// Draws its texture, seen along the direction of projection with a light at the viewer, as every picture of this
     /// crate; nothing is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels + drawn).
     #[must_use]
     pub fn texture(&self, mesh: &Mesh) -> Texture {
@@ -124,7 +124,7 @@ impl Quad {
     }
 }
 
-/// Where the line through `p` along `along` meets the plane through `origin` with the unit vector `normal`.
+/// The point at which the line through `p` along `along` meets the plane through `origin` with the unit vector `normal`.
 pub(super) fn project(p: DVec3, origin: DVec3, normal: DVec3, along: DVec3) -> DVec3 {
     p - along * ((p - origin).dot(normal) / along.dot(normal))
 }
@@ -166,7 +166,7 @@ fn colors(mesh: &Mesh, triangles: &[u32]) -> Vec<[[f64; 3]; 3]> {
     triangles.iter().map(of).collect()
 }
 
-/// How many texels a side needs so that none is seen under more than `angle` from `distance`, at least 1 and at most
+/// Number of texels that a side needs so that none is seen under more than `angle` from `distance`, at least 1 and at most
 /// `most`.
 pub(super) fn texels(side: f64, distance: f64, angle: f64, most: u32) -> u32 {
     let texel = 2.0 * distance * math::tan(angle / 2.0);

@@ -1,5 +1,5 @@
-//! Which planes: greedily the one that takes faces of the most value, each refined between the bearings of the grid, until
-//! no plane takes two faces.
+//! Selection of planes: greedily the one that takes faces of the most value, each refined between the bearings of the
+//! grid, until no plane takes two faces.
 //!
 //! A face is worth its share of the fullest plane of the grid that takes it: 1 / n where at most n go with it. So planes
 //! are chosen that few others could do without, and lonely faces while there is company for them. No plane of the grid is
@@ -12,11 +12,12 @@
 use glam::DVec2;
 
 use super::{
-    Options,
+    BillboardOptions,
     bearing::{Bearing, Turn, grid, half_steps},
-    plan::{Limits, PlanCell, PlanFace},
+    plan::{Limits, PlanFace},
     sweep::{Stab, Sweep},
     tree::PlanTree,
+    viewers_in_plan::PlanCell,
 };
 use crate::{Progress, Result, bound::planar::Interval, parallel};
 
@@ -31,17 +32,17 @@ pub(super) struct Slab {
 
 /// Halvings of the steps of the grid.
 const HALVINGS: u32 = 12;
-/// What a face is worth that goes with no other.
+/// The value of a face that goes with no other.
 const WHOLE: u64 = 1 << 32;
-/// How far a slant of one radian moves the offset of a face per distance from the middle of the plane, at most.
+/// Largest move of a face's offset by a slant of one radian, per distance from the middle of the plane.
 const SLANT_REACH: f64 = 0.1;
 
 struct Selection<'a> {
     faces: &'a [PlanFace],
     tree: &'a PlanTree,
     cell: &'a PlanCell,
-    options: &'a Options,
-    /// What a face is worth; 0 once it is taken.
+    options: &'a BillboardOptions,
+    /// The value of every face; 0 once it is taken.
     values: Vec<u64>,
 }
 
@@ -50,7 +51,7 @@ pub(super) fn select(
     faces: &[PlanFace],
     tree: &PlanTree,
     cell: &PlanCell,
-    options: &Options,
+    options: &BillboardOptions,
     progress: &dyn Progress,
 ) -> Result<(Vec<Slab>, Vec<u32>)> {
     let mut selection = Selection {
@@ -110,7 +111,7 @@ pub(super) fn select(
     Ok((slabs, alone))
 }
 
-/// What every face is worth.
+/// Computes the value of every face.
 fn shares(sweeps: &[Sweep], faces: usize) -> Vec<u64> {
     let of_parts = parallel::collect(sweeps.len(), 1, |range, parts| {
         let mut most = vec![1; faces];
@@ -317,9 +318,9 @@ mod tests {
             DVec2::new(x(), x())
         };
         let aperture = Aperture::degrees(2.0).expect("below 90");
-        let options = Options {
+        let options = BillboardOptions {
             directions: 12,
-            ..Options::within(Limit::Angle(aperture))
+            ..BillboardOptions::within(Limit::Angle(aperture))
         };
         let cell = ViewCell::segment([DVec3::ZERO, DVec3::X]).expect("two points");
         let cell = PlanCell::new(&cell, options.up).expect("room");

@@ -3,7 +3,7 @@
 use super::plan::{Limits, PlanFace};
 use crate::bound::planar::Interval;
 
-/// Where the interval of a face begins or ends: twice its number, one more where it ends.
+/// An end of the interval of a face: twice its number, one more for the upper end.
 type Event = u32;
 
 /// The intervals of faces along one bearing, by their ends in order. Four bytes an end: there are many bearings.

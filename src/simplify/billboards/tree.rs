@@ -1,4 +1,4 @@
-//! Which faces may be projected on a plane, without a look at every one: a tree of boxes over a point of each.
+//! A tree of boxes over plan faces, which finds those that may be projected on a plane.
 //!
 //! A plane takes a strip of the ground that is narrow beside the scene, so that most boxes are left out as a whole. What is
 //! found is a superset by ascending numbers: who asks decides about each, so that nothing depends on the tree.
@@ -16,7 +16,7 @@ struct Node {
     /// A disc that holds the first points of its faces.
     centre: DVec2,
     radius: f64,
-    /// How far the middle of a face is from its first point at most.
+    /// Largest distance of the middle of a face from its first point.
     half: f64,
     /// First face of a leaf, or the second child; the first child is the next node.
     link: u32,

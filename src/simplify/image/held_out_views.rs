@@ -7,7 +7,7 @@
 use super::{ImageOptions, Reference, Size};
 use crate::{
     Progress, Result,
-    mesh::Mesh,
+    mesh::{FramedMesh, Mesh},
     metric::luma::{SquaredError, ViewErrors, squared_error},
     num::Frame,
     parallel,
@@ -38,7 +38,7 @@ impl HeldOut {
     /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
     pub fn new(
         original: &Scene,
-        mesh: &Mesh,
+        mesh: &FramedMesh,
         frame: Frame,
         own: &ImageOptions,
         progress: &dyn Progress,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{super::memoryless::MemorylessOptions, Polish, Preset};
 use crate::{
     Error, Result,
-    mesh::Mesh,
+    mesh::FramedMesh,
     num::Frame,
     view::{
         self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName,
@@ -240,8 +240,8 @@ impl ImageOptions {
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and
     /// [`Error::Io`] for a view file; [`Error::Unsupported`] for more samples in all than 2^27.
-    pub fn views(&self, original: &Mesh, frame: Frame, round: u32) -> Result<ViewSet> {
-        let sphere = Sphere::of_mesh(original)
+    pub fn views(&self, original: &FramedMesh, frame: Frame, round: u32) -> Result<ViewSet> {
+        let sphere = Sphere::of_mesh(original.in_frame_units())
             .ok_or_else(|| Error::Usage("a mesh without triangles has no views".into()))?;
         let size = self.size.pixels(None);
         let set = match self.views.directions() {

@@ -2,20 +2,20 @@
 
 use super::{Deviation, HeldOut, ImageOptions, Reference};
 use crate::{
-    Progress, Result, collapse::LiveMesh, mesh::Mesh, metric::Sides, num::Frame, raster::Scene,
-    view::ViewSet,
+    Progress, Result, collapse::LiveMesh, mesh::FramedMesh, metric::Orientation, num::Frame,
+    raster::Scene, view::ViewSet,
 };
 
 /// The original in the driving views, in views that drive nothing, and as a surface. It depends on no collapse: it is
 /// made beside the part of the run that needs no pictures.
 #[derive(Debug)]
 pub struct Original {
-    mesh: Mesh,
+    mesh: FramedMesh,
     frame: Frame,
     scene: Scene,
     reference: Reference,
     held_out: Option<HeldOut>,
-    sides: Option<Sides>,
+    sides: Option<Orientation>,
 }
 
 impl Original {
@@ -25,7 +25,7 @@ impl Original {
     /// # Errors
     /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
     pub fn draw(
-        mesh: Mesh,
+        mesh: FramedMesh,
         frame: Frame,
         set: ViewSet,
         own: &ImageOptions,
@@ -37,7 +37,7 @@ impl Original {
         Ok(Self {
             reference: Reference::draw(&scene, set, progress)?,
             held_out: contested.then(held_out).transpose()?,
-            sides: Sides::new(&mesh),
+            sides: Orientation::new(&mesh),
             mesh,
             frame,
             scene,
@@ -71,7 +71,7 @@ impl Original {
 
     /// On which side of it a face is; `None` where it has no triangle with an area.
     #[must_use]
-    pub fn sides(&self) -> Option<&Sides> {
+    pub fn sides(&self) -> Option<&Orientation> {
         self.sides.as_ref()
     }
 

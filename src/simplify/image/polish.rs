@@ -22,7 +22,7 @@ use super::{
 use crate::{
     Progress, Result,
     collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, check_folds, flip},
-    metric::Sides,
+    metric::Orientation,
     parallel,
     raster::ViewSubset,
 };
@@ -52,7 +52,7 @@ pub struct Limits<'a> {
     /// The error of the pictures may not rise for the surface either: it is limited.
     pub falling: bool,
     /// The sides of the original, which no face may turn its back on.
-    pub sides: Option<&'a Sides>,
+    pub sides: Option<&'a Orientation>,
 }
 
 impl Limits<'_> {

@@ -11,7 +11,9 @@ use super::{
 };
 use crate::{
     Error, Progress, Result,
-    bound::correspondence::{AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
+    bound::correspondence::{
+        AngleLimit, Answer, Collapse, Correspondence, Face, Layout, PieceScratch,
+    },
     collapse::{
         Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan,
         Proposal, Reason, Refusal, Review, Site,
@@ -38,7 +40,7 @@ struct Buffers {
     patch: Patch,
     removed: Vec<Face>,
     added: Vec<Face>,
-    pieces: Scratch,
+    pieces: PieceScratch,
 }
 
 impl ViewBounded {
@@ -171,7 +173,7 @@ fn lay_out(
     origin: DVec3,
     removed: &mut Vec<Face>,
     added: &mut Vec<Face>,
-) -> Option<Fan> {
+) -> Option<Layout> {
     let (moved, gone) = (patch.moved?, patch.gone?);
     let face = |f: &PatchFace, points: [DVec3; 3]| Face {
         id: f.id,
@@ -182,7 +184,7 @@ fn lay_out(
     removed.extend(patch.removed.iter().map(|f| face(f, patch.before(live, f))));
     added.clear();
     added.extend(patch.added.iter().map(|f| face(f, patch.after(live, f))));
-    Fan::new(&Collapse {
+    Layout::new(&Collapse {
         removed,
         added,
         keep: moved.vertex,

@@ -7,7 +7,7 @@ mod judged;
 use glam::DVec3;
 use lodmark::{
     bound::{
-        correspondence::{Collapse, Correspondence, Face, Fan, Scratch},
+        correspondence::{Collapse, Correspondence, Face, Layout, PieceScratch},
         view_cell::ViewCell,
     },
     mesh::{Mesh, canonical},
@@ -188,13 +188,13 @@ proptest! {
         let mut random = Random(seed);
         let (removed, added, to) = ring(class, &mut random);
         let collapse = Collapse { removed: &removed, added: &added, keep: 0, gone: 1, to };
-        let Some(fan) = Fan::new(&collapse) else {
+        let Some(fan) = Layout::new(&collapse) else {
             // A new vertex outside of what its link sees has no map; rare for these fans.
             return Ok(());
         };
         let originals: Vec<[DVec3; 3]> = removed.iter().map(|f| f.points).collect();
         let mut map = Correspondence::new(originals.clone(), |_| true);
-        assert!(map.apply(&fan, &mut Scratch::default()));
+        assert!(map.apply(&fan, &mut PieceScratch::default()));
         let after = |face: u32| added.iter().find(|f| f.id == face).map_or([DVec3::NAN; 3], |f| f.points);
         let normal: DVec3 = originals.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a)).sum();
         let normal = normal.normalize();
@@ -237,7 +237,7 @@ fn most_fans_of_every_class_have_a_map() {
     for class in [Class::Inside, Class::Touching, Class::Border] {
         let mapped = (0..200).filter(|&seed| {
             let (removed, added, to) = ring(class, &mut Random(seed));
-            Fan::new(&Collapse {
+            Layout::new(&Collapse {
                 removed: &removed,
                 added: &added,
                 keep: 0,
@@ -268,10 +268,10 @@ fn a_flat_fan_moves_no_point() {
             gone: 1,
             to,
         };
-        let fan = Fan::new(&collapse).expect("flat and convex");
+        let fan = Layout::new(&collapse).expect("flat and convex");
         let originals = removed.iter().map(|f| f.points).collect();
         let mut map = Correspondence::new(originals, |_| true);
-        assert!(map.apply(&fan, &mut Scratch::default()));
+        assert!(map.apply(&fan, &mut PieceScratch::default()));
         for face in &added {
             assert!(
                 map.displacement(face.id) < 1e-8,
@@ -286,7 +286,7 @@ fn a_flat_fan_moves_no_point() {
 fn folded_torn_and_turned_fans_have_no_map() {
     let (removed, added, to) = ring(Class::Inside, &mut Random(3));
     let lay_out = |removed: &[Face], added: &[Face], to| {
-        Fan::new(&Collapse {
+        Layout::new(&Collapse {
             removed,
             added,
             keep: 0,

@@ -132,7 +132,8 @@ fn a_third_face_at_an_edge_counts_in_a_distance() {
                 }
             }
             assert!(
-                most <= direction.proven * (1.0 + 1e-9) && direction.proven <= by.length() * 1.001,
+                most <= direction.upper_bound * (1.0 + 1e-9)
+                    && direction.upper_bound <= by.length() * 1.001,
                 "vertex {vertex}: {most}, {direction:?}"
             );
         }

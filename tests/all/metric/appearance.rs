@@ -18,7 +18,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{Impatient, Random, same_on_all_threads};
+use crate::support::{Impatient, Random, same_on_all_threads, scene_of};
 
 /// Small views around a mesh, in its units.
 fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
@@ -43,8 +43,8 @@ pub(crate) fn shaken(mesh: &Mesh, by: f64) -> Mesh {
 }
 
 fn judge(reference: &Mesh, candidate: &Mesh, views: &ViewSet) -> Appearance {
-    let scenes = [Scene::of(candidate)];
-    let mut found = appearance(&Scene::of(reference), &scenes, views, &Silent).expect("finite");
+    let scenes = [scene_of(candidate)];
+    let mut found = appearance(&scene_of(reference), &scenes, views, &Silent).expect("finite");
     found.pop().expect("one for the candidate")
 }
 
@@ -55,8 +55,8 @@ fn by_hand(a: &Mesh, b: &Mesh, views: &ViewSet, shading: Interpolation) -> Vec<u
         view.shading.interpolation = shading;
     }
     let squares = |view| {
-        let a = raster::luma(&Scene::of(a), view, &views).tones;
-        let b = raster::luma(&Scene::of(b), view, &views).tones;
+        let a = raster::luma(&scene_of(a), view, &views).tones;
+        let b = raster::luma(&scene_of(b), view, &views).tones;
         let mut sum = 0;
         for y in 0..views.height {
             for x in 0..views.width {
@@ -114,7 +114,8 @@ proptest! {
             let (mesh, other) = (scaled(&mesh), scaled(&other));
             let frame = frame_of(&mesh);
             let views = views(&mesh, 32, 2).enter_frame(frame);
-            judge(&mesh.enter_frame(frame), &other.enter_frame(frame), &views)
+            let [mesh, other] = [mesh, other].map(|m| m.enter_frame(frame).in_frame_units().clone());
+            judge(&mesh, &other, &views)
         };
         prop_assert_eq!(judged(2.0_f64.powi(exponent)), judged(1.0));
     }
@@ -124,8 +125,8 @@ proptest! {
 fn no_number_of_threads_changes_a_judgement() {
     // More triangles than the rasterizer draws in one piece.
     let mesh = generate::torus(1.0, 0.4, 256, 80);
-    let scenes = [shaken(&mesh, 0.01), generate::icosphere(2)].map(|m| Scene::of(&m));
-    let (reference, views) = (Scene::of(&mesh), views(&mesh, 48, 2));
+    let scenes = [shaken(&mesh, 0.01), generate::icosphere(2)].map(|m| scene_of(&m));
+    let (reference, views) = (scene_of(&mesh), views(&mesh, 48, 2));
     let one =
         same_on_all_threads(|| appearance(&reference, &scenes, &views, &Silent).expect("finite"));
     // Candidates that are judged together do not see each other.
@@ -163,7 +164,7 @@ fn the_pictures_of_a_view_are_those_that_were_compared() {
     let views = views(&mesh, 40, 1);
     let found = judge(&mesh, &other, &views);
     let worst = found.worst();
-    let scenes = [&Scene::of(&mesh), &Scene::of(&other)];
+    let scenes = [&scene_of(&mesh), &scene_of(&other)];
     let [a, b] = pictures(scenes, &views, worst.view, worst.shading).expect("a view");
     let squares = a.values().iter().zip(b.values());
     let sum: u64 = squares
@@ -178,8 +179,8 @@ fn the_pictures_of_a_view_are_those_that_were_compared() {
 fn a_vertex_out_of_this_world_is_refused_with_a_hint_at_units() {
     let mesh = generate::icosphere(1);
     let views = views(&mesh, 16, 1);
-    let far = mesh.leave_frame(Frame { exponent: 2_000 });
-    let refused = appearance(&Scene::of(&mesh), &[Scene::of(&far)], &views, &Silent);
+    let far = mesh.enter_frame(Frame { exponent: -2_000 });
+    let refused = appearance(&scene_of(&mesh), &[Scene::of(&far)], &views, &Silent);
     let Err(Error::Unsupported(message)) = refused else {
         panic!("{refused:?}");
     };
@@ -189,7 +190,7 @@ fn a_vertex_out_of_this_world_is_refused_with_a_hint_at_units() {
 #[test]
 fn an_interruption_ends_a_judgement() {
     let mesh = generate::cube();
-    let scene = Scene::of(&mesh);
+    let scene = scene_of(&mesh);
     let found = appearance(
         &scene,
         std::slice::from_ref(&scene),

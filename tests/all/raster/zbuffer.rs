@@ -9,6 +9,8 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
+use crate::support::scene_of;
+
 /// Keys and luma from every triangle on its own, in the order of the scene.
 fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<SampleKey>, Vec<u8>) {
     let projector = Projector::new(view, set);
@@ -163,7 +165,7 @@ proptest! {
 #[test]
 fn a_reused_buffer_and_any_number_of_parts_give_the_same_picture() {
     let mesh = generate::icosphere(6);
-    let scene = Scene::of(&mesh);
+    let scene = scene_of(&mesh);
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
     let pictures = |threads: usize| -> Vec<(Grid<SampleKey>, u64)> {
         let mut buffer = ZBuffer::new(threads);

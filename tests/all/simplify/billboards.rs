@@ -17,17 +17,17 @@ use lodmark::{
     Silent,
     bound::{planar::Aperture, view_cell::ViewCell},
     mesh::{Mesh, generate},
-    simplify::billboards::{Cloud, Limit, Options, Quad, Up, billboards},
+    simplify::billboards::{BillboardOptions, Cloud, Limit, Quad, Up, billboards},
 };
 
 use crate::support::{Random, same_on_all_threads};
 
-fn within(degrees: f64) -> Options {
+fn within(degrees: f64) -> BillboardOptions {
     let aperture = Aperture::degrees(degrees).expect("below 90");
-    Options {
+    BillboardOptions {
         directions: 60,
         texels: 128,
-        ..Options::within(Limit::Angle(aperture))
+        ..BillboardOptions::within(Limit::Angle(aperture))
     }
 }
 
@@ -40,7 +40,7 @@ fn in_the_forest() -> ViewCell {
         .expect("two points")
 }
 
-fn cloud(mesh: &Mesh, cell: &ViewCell, options: &Options) -> Cloud {
+fn cloud(mesh: &Mesh, cell: &ViewCell, options: &BillboardOptions) -> Cloud {
     billboards(mesh, cell, options, &Silent).expect("a cloud")
 }
 
@@ -250,7 +250,7 @@ fn every_triangle_is_shown_by_one_quad_for_its_own() {
 #[test]
 fn the_city_needs_no_more_quads_than_the_published_one() {
     let aperture = Aperture::degrees(0.1).expect("below 90");
-    let mut options = Options::within(Limit::Angle(aperture));
+    let mut options = BillboardOptions::within(Limit::Angle(aperture));
     let city = generate::city();
     assert_eq!(city.triangles().len(), 4200);
     let cloud = cloud(&city, &before_the_city(), &options);
@@ -364,7 +364,7 @@ fn a_cell_that_covers_the_ground_is_refused() {
         assert!(error.to_string().contains("covers the ground"), "{error}");
     }
     for (directions, texels) in [(0, 10), (5000, 10), (10, 0), (10, 5000)] {
-        let options = Options {
+        let options = BillboardOptions {
             directions,
             texels,
             ..within(1.0)
@@ -373,7 +373,7 @@ fn a_cell_that_covers_the_ground_is_refused() {
             billboards(&mesh, &before_the_city(), &options, &Silent).expect_err("out of range");
         assert_eq!(error.exit_code(), 2);
     }
-    let options = Options {
+    let options = BillboardOptions {
         limit: Limit::Distance(f64::NAN),
         ..within(1.0)
     };
@@ -438,7 +438,7 @@ fn another_axis_up_gives_the_same_cloud() {
     ] {
         let cell = ViewCell::half_space(turn(DVec3::new(0.0, -6.0, 0.0)), turn(DVec3::Y))
             .expect("a normal");
-        let options = Options { up, ..within(0.3) };
+        let options = BillboardOptions { up, ..within(0.3) };
         let other = cloud(&turned(turn), &cell, &options);
         assert_eq!(other.quads.len(), z.quads.len());
         for (a, b) in z.quads.iter().zip(&other.quads) {
@@ -453,7 +453,7 @@ fn another_axis_up_gives_the_same_cloud() {
 #[test]
 fn no_point_is_displaced_by_more_than_a_distance() {
     let mesh = blocks(60);
-    let options = Options {
+    let options = BillboardOptions {
         limit: Limit::Distance(0.02),
         ..within(1.0)
     };

@@ -62,7 +62,12 @@ struct Judge<'a> {
 
 impl Observer for Judge<'_> {
     fn committed(&mut self, live: &LiveMesh, _: &Patch) {
-        let now = live.to_mesh().expect("valid").enter_frame(live.frame());
+        let now = live
+            .to_mesh()
+            .expect("valid")
+            .enter_frame(live.frame())
+            .in_frame_units()
+            .clone();
         let (sum, deviation) = (
             error(self.original, &now, self.set),
             deviation(self.faces, &now),
@@ -89,7 +94,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
     let mut for_the_surface = 0;
     for mesh in [generate::torus(1.0, 0.4, 10, 6), generate::icosphere(1)] {
         let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame);
+        let original = mesh.enter_frame(frame).in_frame_units().clone();
         let all = faces(&original);
         let surface = TriangleTree::new(all.clone()).expect("triangles");
         let sphere = Sphere::of_mesh(&original).expect("triangles");
@@ -100,7 +105,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
             let mut live = LiveMesh::new(&worse, frame);
             let pictures = Pictures::new(&reference(&original, set), &live, EngineName::Layers);
             let bound = Deviation::new(&surface, &live, weight);
-            let total = deviation(&all, &worse.enter_frame(frame));
+            let total = deviation(&all, &worse.enter_frame(frame).in_frame_units().clone());
             let mut judge = Judge {
                 original: &original,
                 faces: &all,
@@ -132,7 +137,12 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
                 &Silent,
             )
             .expect("not interrupted");
-            let result = live.to_mesh().expect("valid").enter_frame(frame);
+            let result = live
+                .to_mesh()
+                .expect("valid")
+                .enter_frame(frame)
+                .in_frame_units()
+                .clone();
             assert_eq!(
                 pictures.error().sum() as i64,
                 error(&original, &result, set)

@@ -9,7 +9,7 @@ use lodmark::{
     },
     mesh::{Mesh, canonical, generate},
     num::math,
-    raster::{self, Scene},
+    raster,
     simplify::{
         self, MethodOptions, Options, Stop, Target,
         image::{EngineName, ImageDriven, Pictures, Preset, Reference, Size, Start},
@@ -21,7 +21,7 @@ use lodmark::{
     },
 };
 
-use crate::support::same_on_all_threads;
+use crate::support::{same_on_all_threads, scene_of};
 
 /// The method, remembering what it was about to commit.
 struct Watched {
@@ -69,12 +69,12 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watche
 
 /// The pictures of `original`, in units of the frame of `set`.
 pub(crate) fn reference(original: &Mesh, set: &ViewSet) -> Reference {
-    Reference::draw(&Scene::of(original), set.clone(), &Silent).expect("not interrupted")
+    Reference::draw(&scene_of(original), set.clone(), &Silent).expect("not interrupted")
 }
 
 /// Sum of squared luma differences, by drawing everything.
 pub(crate) fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
-    let (a, b) = (Scene::of(original), Scene::of(current));
+    let (a, b) = (scene_of(original), scene_of(current));
     let view = |view: &View| -> i64 {
         let (x, y) = (
             raster::luma_sums(&a, view, set),
@@ -223,7 +223,7 @@ fn rules(mesh_name: &str) -> Rules {
 fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
     for (mesh_name, mesh) in meshes() {
         let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame);
+        let original = mesh.enter_frame(frame).in_frame_units().clone();
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (view_name, set) in view_sets(&sphere) {
             let live = LiveMesh::new(&mesh, frame);
@@ -239,8 +239,14 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                     break;
                 }
                 steps += 1;
-                let now = engine.live().to_mesh().expect("valid").enter_frame(frame);
-                let (scene, pictures) = (Scene::of(&now), method.inner.error());
+                let now = engine
+                    .live()
+                    .to_mesh()
+                    .expect("valid")
+                    .enter_frame(frame)
+                    .in_frame_units()
+                    .clone();
+                let (scene, pictures) = (scene_of(&now), method.inner.error());
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
@@ -269,13 +275,18 @@ type Key = (i64, f64, f64, [u32; 2]);
 fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
     for (mesh_name, mesh) in meshes() {
         let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame);
+        let original = mesh.enter_frame(frame).in_frame_units().clone();
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (view_name, set) in view_sets(&sphere).into_iter().step_by(3) {
             let mut live = LiveMesh::new(&mesh, frame);
             // The published cost, and twice with swept volume charged for.
             for price in [0.0, 0.0, 3e3, 1e6] {
-                let now = live.to_mesh().expect("valid").enter_frame(frame);
+                let now = live
+                    .to_mesh()
+                    .expect("valid")
+                    .enter_frame(frame)
+                    .in_frame_units()
+                    .clone();
                 let before = error(&original, &now, &set);
                 // (1) Every legal collapse, judged by drawing the whole result.
                 let mut cheapest: Option<(Key, i64)> = None;
@@ -293,7 +304,12 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                     site.patch(proposal.position, &mut patch);
                     let mut after = live.clone();
                     after.apply(&patch, &mut lodmark::collapse::Changes::default());
-                    let result = after.to_mesh().expect("valid").enter_frame(frame);
+                    let result = after
+                        .to_mesh()
+                        .expect("valid")
+                        .enter_frame(frame)
+                        .in_frame_units()
+                        .clone();
                     let cost = error(&original, &result, &set) - before;
                     let ends = live.edge(edge).expect("in use");
                     let d = live.position(ends[1]) - live.position(ends[0]);

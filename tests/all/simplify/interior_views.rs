@@ -6,7 +6,6 @@ use lodmark::{
     Silent,
     mesh::{Mesh, canonical, generate},
     metric::{appearance::flat, surface::surface_distance},
-    raster::Scene,
     simplify::{
         Options, Schedule, Target,
         image::{ImageOptions, Preset, Size, Start},
@@ -14,6 +13,8 @@ use lodmark::{
     },
     view::{Cull, Projection, Sphere, ViewSet, frame_of, sets::rhombicuboctahedron},
 };
+
+use crate::support::scene_of;
 
 /// The scene, and what is left of it with 0, 10 and 20 of 20 views that look inside.
 fn results() -> &'static (Mesh, [Mesh; 3]) {
@@ -38,12 +39,13 @@ fn results() -> &'static (Mesh, [Mesh; 3]) {
 /// Flat RMS in views that drove nothing.
 fn rms(original: &Mesh, other: &Mesh, cull: Cull) -> f64 {
     let frame = frame_of(original);
-    let [original, other] = [original, other].map(|m| m.enter_frame(frame));
+    let [original, other] =
+        [original, other].map(|m| m.enter_frame(frame).in_frame_units().clone());
     let sphere = Sphere::of_mesh(&original).expect("triangles");
     let directions = rhombicuboctahedron();
     let views = ViewSet::around(&sphere, &directions, 96, 96, Projection::Perspective);
     let views = views.expect("small").with_cull(cull);
-    let found = flat(&Scene::of(&original), &[Scene::of(&other)], &views, &Silent);
+    let found = flat(&scene_of(&original), &[scene_of(&other)], &views, &Silent);
     found.expect("finite")[0].total().rms()
 }
 

@@ -44,7 +44,11 @@ fn polished(
 ) -> (LiveMesh, u64, Pictures, PolishCounters) {
     let frame = frame_of(mesh);
     let mut live = LiveMesh::new(worse, frame);
-    let pictures = Pictures::new(&reference(&mesh.enter_frame(frame), set), &live, engine);
+    let pictures = Pictures::new(
+        &reference(mesh.enter_frame(frame).in_frame_units(), set),
+        &live,
+        engine,
+    );
     let before = pictures.error().sum();
     let (pictures, counters) = polish(
         &mut live,
@@ -82,7 +86,12 @@ struct Falling<'a> {
 impl Observer for Falling<'_> {
     fn committed(&mut self, live: &LiveMesh, _: &Patch) {
         let frame = live.frame();
-        let now = live.to_mesh().expect("valid").enter_frame(frame);
+        let now = live
+            .to_mesh()
+            .expect("valid")
+            .enter_frame(frame)
+            .in_frame_units()
+            .clone();
         let error = error(self.original, &now, self.set);
         assert!(error < self.last, "{error} after {}", self.last);
         self.last = error;
@@ -95,7 +104,7 @@ fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
     let mut changes = 0;
     for (name, mesh) in meshes() {
         let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame);
+        let original = mesh.enter_frame(frame).in_frame_units().clone();
         let worse = pushed(&mesh, 0.06, 7);
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (views, set) in view_sets(&sphere) {
@@ -136,7 +145,7 @@ fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
 #[test]
 fn both_engines_polish_alike() {
     for (name, mesh) in meshes() {
-        let original = mesh.enter_frame(frame_of(&mesh));
+        let original = mesh.enter_frame(frame_of(&mesh)).in_frame_units().clone();
         let worse = pushed(&mesh, 0.05, 3);
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         for (views, set) in view_sets(&sphere).into_iter().take(3) {
@@ -252,7 +261,7 @@ proptest! {
     #[test]
     fn polishing_changes_no_topology(kind in 0_usize..8, seed: u64) {
         let mesh = canonical(&meshes::any(kind, seed)).mesh;
-        let original = mesh.enter_frame(frame_of(&mesh));
+        let original = mesh.enter_frame(frame_of(&mesh)).in_frame_units().clone();
         let sphere = Sphere::of_mesh(&original).expect("triangles");
         let set = view_sets(&sphere).swap_remove(seed as usize % 2).1;
         let worse = pushed(&mesh, 0.1, seed);
@@ -302,7 +311,7 @@ fn a_locked_vertex_stays_where_it_is() {
     let mesh = generate::icosphere(1);
     let worse = pushed(&mesh, 0.1, 1);
     let frame = frame_of(&mesh);
-    let original = mesh.enter_frame(frame);
+    let original = mesh.enter_frame(frame).in_frame_units().clone();
     let sphere = Sphere::of_mesh(&original).expect("triangles");
     let (_, set) = view_sets(&sphere).swap_remove(0);
     let mut live = LiveMesh::new(&worse, frame);

@@ -1,9 +1,18 @@
 //! Small meshes for tests: closed, open, non-manifold, duplicated, soups; plain and textured.
 
 use glam::DVec3;
-use lodmark::mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts};
+use lodmark::{
+    mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts},
+    num::Frame,
+    raster::Scene,
+};
 
 use super::Random;
+
+/// A mesh to draw in views that are in its units.
+pub(crate) fn scene_of(mesh: &Mesh) -> Scene {
+    Scene::of(&mesh.enter_frame(Frame::default()))
+}
 
 fn jitter(positions: &mut [DVec3], amount: f64, random: &mut Random) {
     for p in positions {

@@ -19,6 +19,7 @@ pub(crate) use folds::faults;
 pub(crate) use geometry::{
     at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
 };
+pub(crate) use meshes::scene_of;
 pub(crate) use models::{model, read_model};
 pub(crate) use oracle::say;
 pub(crate) use progress::{Impatient, Recorder, StopsAfter};

@@ -228,9 +228,12 @@ fn the_frame_of_huge_and_tiny_meshes_brings_the_radius_into_half_to_one() {
         })
         .expect("finite");
         let frame = frame_of(&mesh);
-        let s = Sphere::of_mesh(&mesh.enter_frame(frame)).expect("triangles");
+        let s = Sphere::of_mesh(mesh.enter_frame(frame).in_frame_units()).expect("triangles");
         assert!((0.5..1.0).contains(&s.radius), "{size}: {s:?} in {frame:?}");
-        assert_eq!(frame_of(&mesh.enter_frame(frame)), Frame::default());
+        assert_eq!(
+            frame_of(mesh.enter_frame(frame).in_frame_units()),
+            Frame::default()
+        );
         assert!(ViewSet::costs(&s).is_ok());
     }
 }

@@ -13,7 +13,7 @@ use lodmark::{
     encode::npy,
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Grid, SampleKey, Scene},
+    raster::{self, Grid, SampleKey},
     view::{Eye, Projection, Sphere, ViewSet, file, frame_of, sets},
     visibility::{
         self, MeasureOptions,
@@ -25,7 +25,7 @@ use crate::{
     support::{
         folder, model,
         oracle::{embree, oracle},
-        say,
+        say, scene_of,
     },
     visibility::rays::framed,
 };
@@ -65,7 +65,7 @@ fn against_embree(packages: &Path, mesh: &Mesh, set: &ViewSet) -> (Tally, f64) {
     write_mesh(dir.path(), mesh);
     write_views(dir.path(), set);
     oracle(packages, &["cast"], dir.path());
-    let (caster, scene) = (RayCaster::new(mesh), Scene::of(mesh));
+    let (caster, scene) = (RayCaster::new(mesh), scene_of(mesh));
     let face = first_of_its_place(mesh);
     let (mut tally, mut far, mut same) = (Tally::default(), 0_u64, 0_u64);
     for (i, view) in set.views.iter().enumerate() {
@@ -170,7 +170,7 @@ fn embree_finds_a_planted_bug() {
     write_views(dir.path(), &moved);
     oracle(packages, &["cast"], dir.path());
     let ids: Grid<u32> = npy::read_plane(&dir.path().join("view-00-ids.npy")).expect("reads");
-    let drawn = raster::keys(&Scene::of(&mesh), &set.views[0], &set).keys;
+    let drawn = raster::keys(&scene_of(&mesh), &set.views[0], &set).keys;
     let mut cast = drawn.clone();
     for (key, &id) in cast.values_mut().iter_mut().zip(ids.values()) {
         *key = match id {
@@ -234,7 +234,7 @@ fn by_paper(packages: &Path, mesh: &Mesh, options: &MeasureOptions) -> Vec<f64> 
 }
 
 fn in_frame(mesh: &Mesh) -> Mesh {
-    mesh.enter_frame(frame_of(mesh))
+    mesh.enter_frame(frame_of(mesh)).in_frame_units().clone()
 }
 
 #[test]

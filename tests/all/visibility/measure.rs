@@ -5,24 +5,24 @@ use lodmark::{
     Error, Silent,
     mesh::{self, Mesh, generate},
     num::{fixed::SubpixelBits, math},
-    raster::{self, Scene},
+    raster,
     view::{Projection, Sphere, ViewSet, frame_of, sets::octahedron},
     visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule, measure},
 };
 use proptest::prelude::*;
 
 use super::{nested, small};
-use crate::support::{Impatient, model, same_on_all_threads};
+use crate::support::{Impatient, model, same_on_all_threads, scene_of};
 
 /// Equation 4.3 as it is written, with pixels alone, on pictures that the raster stage draws.
 fn brute_force(mesh: &Mesh, k: u32, size: u32) -> Vec<f64> {
     let frame = frame_of(mesh);
-    let mesh = mesh.clone().enter_frame(frame);
+    let mesh = mesh.clone().enter_frame(frame).in_frame_units().clone();
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
     let directions = octahedron(k);
     let set =
         ViewSet::around(&sphere, &directions, size, size, Projection::Orthographic).expect("views");
-    let scene = Scene::of(&mesh);
+    let scene = scene_of(&mesh);
     let count = mesh.triangles().len();
     let (mut seen, mut all) = (vec![0.0; count], vec![0.0; count]);
     for (view, towards) in set.views.iter().zip(&directions) {

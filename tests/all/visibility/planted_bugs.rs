@@ -5,12 +5,15 @@ use lodmark::{
     Error, Silent,
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
-    raster::{self, Grid, SampleKey, Scene},
+    raster::{self, Grid, SampleKey},
     view::{Cull, Projection, View, ViewSet},
     visibility::rays::{Class, RayCaster, TOLERANCE, cap},
 };
 
-use crate::visibility::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers};
+use crate::{
+    support::scene_of,
+    visibility::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers},
+};
 
 /// Squares of `step` pixels whose corners are pixel centres, every fourth triangle a second time.
 fn tiles(step: usize) -> Mesh {
@@ -163,7 +166,7 @@ fn the_rasterizer_for_planted_bugs_has_none_of_its_own() {
         (tiles(3), grid_set(sixteen, Cull::None)),
         (tiles(4), grid_set(SubpixelBits::Eight, Cull::None)),
     ] {
-        let scene = Scene::of(&mesh);
+        let scene = scene_of(&mesh);
         for view in &set.views {
             assert_eq!(
                 draw(&mesh, view, &set, Bug::None),

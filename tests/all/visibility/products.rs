@@ -5,11 +5,13 @@ use lodmark::{
     io::{self, Format},
     mesh::{ChannelKind, Mesh, MeshParts, generate},
     num::math,
-    raster::{self, Scene},
+    raster,
     view::{Projection, Sphere, ViewSet, sets::octahedron},
     visibility::{MeasureOptions, PartialVisibility, convergence, measure, ply, remove_hidden},
 };
 use proptest::prelude::*;
+
+use crate::support::scene_of;
 
 use super::{nested, small};
 
@@ -28,7 +30,7 @@ fn removing_what_is_hidden_changes_no_picture() {
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
     let views = octahedron(1);
     let set = ViewSet::around(&sphere, &views, 64, 64, Projection::Perspective).expect("views");
-    let scenes = [&mesh, &kept].map(Scene::of);
+    let scenes = [&mesh, &kept].map(scene_of);
     for view in &set.views {
         let [before, after] = scenes
             .each_ref()

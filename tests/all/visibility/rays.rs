@@ -5,14 +5,14 @@ use lodmark::{
     Error, Silent,
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
-    raster::{self, Grid, SampleKey, Scene},
+    raster::{self, Grid, SampleKey},
     view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, frame_of, sets},
     visibility::rays::{Class, RayCaster, Tally},
 };
 use proptest::prelude::*;
 
 use crate::support::{
-    Impatient, code, expect, folder, lodmark, meshes, model, put, stderr, stdout,
+    Impatient, code, expect, folder, lodmark, meshes, model, put, scene_of, stderr, stdout,
 };
 
 /// The views of a mesh from some of the dodecahedron's directions, and the mesh in their frame.
@@ -30,7 +30,7 @@ pub(crate) fn framed(
         .expect("views")
         .with_subpixel(bits)
         .enter_frame(frame);
-    (mesh.enter_frame(frame), set)
+    (mesh.enter_frame(frame).in_frame_units().clone(), set)
 }
 
 /// Every view of `draw` against rays.
@@ -47,7 +47,7 @@ pub(crate) fn tally(mesh: &Mesh, set: &ViewSet, draw: impl Fn(&View) -> Grid<Sam
 
 /// The rasterizer against rays.
 fn check(mesh: &Mesh, set: &ViewSet) -> Tally {
-    let scene = Scene::of(mesh);
+    let scene = scene_of(mesh);
     tally(mesh, set, |view| raster::keys(&scene, view, set).keys)
 }
 

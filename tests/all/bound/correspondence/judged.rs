@@ -4,7 +4,9 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use lodmark::bound::{
-    correspondence::{Allowance, AngleLimit, Answer, Collapse, Correspondence, Face, Fan, Scratch},
+    correspondence::{
+        Allowance, AngleLimit, Answer, Collapse, Correspondence, Face, Layout, PieceScratch,
+    },
     view_cell::ViewCell,
 };
 use proptest::prelude::*;
@@ -33,12 +35,12 @@ impl Allowance for Judge {
     }
 }
 
-fn judge(map: &Correspondence, fan: &Fan, wrong: usize) -> (Answer, Heard) {
+fn judge(map: &Correspondence, fan: &Layout, wrong: usize) -> (Answer, Heard) {
     let judge = Judge {
         wrong,
         heard: RefCell::default(),
     };
-    let answer = map.allows(fan, &judge, &mut Scratch::default());
+    let answer = map.allows(fan, &judge, &mut PieceScratch::default());
     (answer, judge.heard.into_inner())
 }
 
@@ -51,7 +53,7 @@ proptest! {
         let mut random = Random(seed);
         let (removed, added, to) = ring(class, &mut random);
         let collapse = Collapse { removed: &removed, added: &added, keep: 0, gone: 1, to };
-        let Some(fan) = Fan::new(&collapse) else { return Ok(()) };
+        let Some(fan) = Layout::new(&collapse) else { return Ok(()) };
         let originals: Vec<[DVec3; 3]> = removed.iter().map(|f| f.points).collect();
         let mut map = Correspondence::new(originals.clone(), |_| true);
         let (answer, all) = judge(&map, &fan, usize::MAX);
@@ -61,7 +63,7 @@ proptest! {
             prop_assert_eq!(answer, Answer::Denied, "{:?}: piece {} of {}", class, wrong, all.len());
             prop_assert_eq!(&heard[..], &all[..=wrong]);
         }
-        prop_assert!(map.apply(&fan, &mut Scratch::default()));
+        prop_assert!(map.apply(&fan, &mut PieceScratch::default()));
         let mut rest = all;
         for face in 0..map.face_count() as u32 {
             for piece in map.pieces(face) {
@@ -242,7 +244,7 @@ fn a_fan_that_goes_around_twice_has_no_map() {
                 });
             }
         }
-        Fan::new(&Collapse {
+        Layout::new(&Collapse {
             removed: &removed,
             added: &added,
             keep: 0,

@@ -103,7 +103,7 @@ fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
     assert!(held.holds && held.proven, "{held:?}");
     // Nothing is looked at closely under a claim that is far too large; what is proven is true all the same.
     let loose = report(100.0);
-    assert!(loose.directions[1].proven >= 0.25, "{loose:?}");
+    assert!(loose.directions[1].upper_bound >= 0.25, "{loose:?}");
     // Every point of the frame lies on the roof.
     let one_sided =
         distance(&roof, &frame, Claim::Absolute(1e-2), true, 100, &Silent).expect("valid");
@@ -139,7 +139,7 @@ fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() 
             let claim = Claim::Absolute(most * (1.0 + share));
             let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
             assert!(found.proven, "{share}: {found:?}");
-            let proven = found.directions[0].proven;
+            let proven = found.directions[0].upper_bound;
             assert!(proven >= most * (1.0 - 1e-12), "{proven} below {most}");
             let claim = Claim::Absolute(most * (1.0 - share));
             let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
@@ -198,7 +198,7 @@ fn what_no_cut_decides_is_not_said_to_be_proven() {
         panic!("{found:?}");
     };
     assert!(
-        !only.is_proven && only.proven > 1.0 && only.undecided_area > 0.0,
+        !only.is_proven && only.upper_bound > 1.0 && only.undecided_area > 0.0,
         "{only:?}"
     );
 }
@@ -279,16 +279,16 @@ proptest! {
             let corners = from.corners(d.farthest.triangle as usize);
             let single = Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid");
             prop_assert!(slow(DVec3::from_array(d.farthest.point), &single) < 1e-4 * report.diagonal);
-            prop_assert!(d.proven >= said && d.holds == (said <= report.claimed * (1.0 + 1e-9) + 2e-10 * report.diagonal));
+            prop_assert!(d.upper_bound >= said && d.holds == (said <= report.claimed * (1.0 + 1e-9) + 2e-10 * report.diagonal));
             for _ in 0..20 {
                 let [p, q, r] = from.corners(random.below(from.triangles().len()));
                 let (u, v) = (random.unit(), random.unit());
                 let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
                 let measured = slow(p + (q - p) * u + (r - p) * v, to);
-                prop_assert!(measured <= d.proven + 1e-9 * report.diagonal, "{measured} {d:?}");
+                prop_assert!(measured <= d.upper_bound + 1e-9 * report.diagonal, "{measured} {d:?}");
             }
             if d.holds {
-                prop_assert!(d.undecided_area > 0.0 || d.proven <= report.claimed * (1.0 + 1e-8) + 1e-9);
+                prop_assert!(d.undecided_area > 0.0 || d.upper_bound <= report.claimed * (1.0 + 1e-8) + 1e-9);
             }
         }
     }

@@ -6,7 +6,7 @@ use lodmark::{
     Error,
     bound::planar::Aperture,
     io,
-    simplify::billboards::{Limit, Options, billboards, files},
+    simplify::billboards::{BillboardOptions, Limit, billboards, files},
 };
 
 use super::{before_the_city, blocks, cloud, within};
@@ -63,9 +63,9 @@ fn what_the_command_writes_is_read_back() {
         let picture = std::fs::read(path(&format!("out/quad-{i:04}.png"))).expect("a texture");
         assert!(picture.starts_with(b"\x89PNG"));
     }
-    let options = Options {
+    let options = BillboardOptions {
         texels: 64,
-        ..Options::within(Limit::Angle(Aperture::degrees(0.5).expect("below 90")))
+        ..BillboardOptions::within(Limit::Angle(Aperture::degrees(0.5).expect("below 90")))
     };
     let own = cloud(&mesh, &before_the_city(), &options);
     assert_eq!(

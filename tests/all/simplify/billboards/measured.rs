@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use lodmark::{
     bound::view_cell::ViewCell,
     mesh::{Mesh, generate},
-    simplify::billboards::Options,
+    simplify::billboards::BillboardOptions,
 };
 
 use super::{angle, before_the_city, behind, blocks, cloud, in_the_forest, place, within};
@@ -24,14 +24,14 @@ struct Scene {
     viewer: fn(DVec2, f64) -> DVec2,
     /// Heights of eyes.
     eyes: [f64; 2],
-    options: Options,
+    options: BillboardOptions,
 }
 
 fn scenes(whole: bool) -> [Scene; 2] {
     let options = |degrees: f64| {
         if whole {
-            Options {
-                directions: Options::DIRECTIONS,
+            BillboardOptions {
+                directions: BillboardOptions::DIRECTIONS,
                 texels: 256,
                 ..within(0.1)
             }
