@@ -14,14 +14,14 @@ use crate::{
 /// Options of the method `visibility`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct GuidanceArgs {
-    /// Visibility method: the counts of this mesh that `lodmark visibility --partial` wrote, by whichever rule, instead
+    /// The counts of this mesh that `lodmark visibility --partial` wrote, by whichever rule, instead
     /// of measuring
     #[arg(long, value_name = "FILE")]
     visibility: Option<PathBuf>,
-    /// Visibility method: measure with 6, 18, 66, 258, 1026 or 4098 cameras [default: 258]
+    /// Measure with 6, 18, 66, 258, 1026 or 4098 cameras [default: 258]
     #[arg(long, value_name = "N", conflicts_with = "visibility", value_parser = parse_cameras)]
     cameras: Option<u32>,
-    /// Visibility method: width and height of the ID buffers [default: 480]
+    /// Width and height of the ID buffers [default: 480]
     #[arg(long, value_name = "PIXELS", conflicts_with = "visibility")]
     visibility_size: Option<u32>,
 }
@@ -40,13 +40,17 @@ impl GuidanceArgs {
         }
     }
 
-    /// The names of all options, and which of them are given.
-    pub(super) fn given(&self) -> [(&'static str, bool); 3] {
-        [
+    /// The first option that is given.
+    pub(super) fn first_given(&self) -> Option<&'static str> {
+        let given = [
             ("--visibility", self.visibility.is_some()),
             ("--cameras", self.cameras.is_some()),
             ("--visibility-size", self.visibility_size.is_some()),
-        ]
+        ];
+        given
+            .iter()
+            .find(|(_, given)| *given)
+            .map(|(name, _)| *name)
     }
 
     /// The visibility in the file, where one is given.

@@ -39,7 +39,7 @@ use std::{
     process::ExitCode,
 };
 
-use clap::{Parser, Subcommand, error::ErrorKind};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand, error::ErrorKind};
 
 use crate::{Error, Result, parallel};
 use terminal::Terminal;
@@ -110,16 +110,24 @@ enum Verdict {
     Negative,
 }
 
+/// The arguments of the command, with the headings of the help.
+fn command() -> clap::Command {
+    Arguments::command().mut_subcommand("simplify", simplify::option_table::with_headings)
+}
+
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) => return usage(&error),
+    let parsed = command()
+        .try_get_matches()
+        .and_then(|matches| Arguments::from_arg_matches(&matches).map(|found| (found, matches)));
+    let (arguments, matches) = match parsed {
+        Ok(parsed) => parsed,
+        Err(error) => return usage(&error.format(&mut command())),
     };
     let common = arguments.common.clone();
     // A panic is a bug; it ends with its own exit code, and unwinding removes temporary files.
-    let outcome = panic::catch_unwind(AssertUnwindSafe(|| run(arguments)));
+    let outcome = panic::catch_unwind(AssertUnwindSafe(|| run(arguments, &matches)));
     let error = match outcome {
         Ok(Ok(Verdict::Good)) => return ExitCode::SUCCESS,
         Ok(Ok(Verdict::Negative)) => return ExitCode::from(1),
@@ -141,14 +149,17 @@ fn usage(error: &clap::Error) -> ExitCode {
     }
 }
 
-fn run(arguments: Arguments) -> Result<Verdict> {
+fn run(arguments: Arguments, matches: &ArgMatches) -> Result<Verdict> {
     let common = &arguments.common;
     if let Some(threads) = common.threads {
         parallel::set_threads(usize::from(threads))?;
     }
     let terminal = Terminal::new(common.quiet);
     let verdict = match arguments.command {
-        Command::Simplify(options) => simplify::run(&options, common, &terminal),
+        Command::Simplify(options) => {
+            let given = matches.subcommand().map_or(matches, |(_, given)| given);
+            simplify::run(&options, given, common, &terminal)
+        }
         Command::Replay(options) => replay::run(&options, common, &terminal),
         Command::Render(options) => render::run(&options, common, &terminal),
         Command::Compare(options) => compare::run(&options, common, &terminal),

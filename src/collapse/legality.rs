@@ -16,6 +16,7 @@ use super::{
 
 /// Treatment of the topology by collapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
     /// Holes, handles, components, boundaries and non-manifold curves stay as they are.

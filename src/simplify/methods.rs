@@ -88,6 +88,20 @@ macro_rules! methods {
         #[non_exhaustive]
         pub enum MethodOptions { $($(#[doc = $doc])+ $name($options),)+ }
 
+        /// A method by its name alone.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+        #[non_exhaustive]
+        pub enum MethodName { $($(#[doc = $doc])+ $name,)+ }
+
+        impl MethodName {
+            /// The name on the command line and in reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+        }
+
         impl MethodOptions {
             /// The method's name on the command line and in reports.
             #[must_use]
@@ -109,16 +123,16 @@ macro_rules! methods {
 }
 
 methods! {
-    /// Lindstrom & Turk 2000.
+    /// By the change of pictures (Lindstrom & Turk 2000).
     Image(ImageOptions) => "image",
-    /// Lindstrom & Turk 1998/99.
+    /// By swept volumes (Lindstrom & Turk 1998/99).
     Memoryless(MemorylessOptions) => "memoryless",
-    /// Garland & Heckbert 1997/98.
+    /// By distances to planes (Garland & Heckbert 1997/98).
     Quadric(QuadricOptions) => "quadric",
-    /// Zhang & Turk 2002.
+    /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002).
     Visibility(VisibilityOptions) => "visibility",
-    /// Cox & Chibelushi 2005.
+    /// Within a distance of the input, guaranteed (after Cox & Chibelushi 2005).
     Tolerance(ToleranceOptions) => "tolerance",
-    /// Eisemann & Décoret 2007: within an angle for the viewers in a cell.
+    /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007).
     ViewBounded(ViewBoundedOptions) => "view-bounded",
 }

@@ -23,7 +23,7 @@ pub mod visibility;
 /// The history that an [`Outcome`] carries to rebuild any level, the type that rebuilds it, and the enums of
 /// [`Options`].
 pub use crate::collapse::{History, Replay, Rules, Schedule, Stop, Topology};
-pub use methods::{MethodOptions, Report};
+pub use methods::{MethodName, MethodOptions, Report};
 pub use options::Options;
 pub use outcome::{Outcome, Phase};
 pub use replacement::{NearestTriangle, originals};

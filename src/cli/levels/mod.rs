@@ -10,10 +10,9 @@ mod judge;
 
 use std::{io::Write, path::PathBuf};
 
-use clap::ValueEnum;
-
 use super::{
-    Common, Verdict, guidance_args::GuidanceArgs, input, report, table, terminal::Terminal,
+    Common, Verdict, file_help, guidance_args::GuidanceArgs, input, report, table,
+    terminal::Terminal,
 };
 use crate::{
     Error, Result,
@@ -26,7 +25,7 @@ use crate::{
         surface::DEFAULT_SAMPLES,
     },
     simplify::{
-        MethodOptions, Options as RunOptions, Outcome, Target,
+        MethodName, MethodOptions, Options as RunOptions, Outcome, Target,
         image::{ImageOptions, Start},
         simplify_guided, simplify_with,
         visibility::VisibilityOptions,
@@ -37,12 +36,12 @@ use judge::Level;
 
 /// Compare methods over a range of levels: image error, distance, a table and a chart
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
+#[command(after_long_help = file_help::paragraphs(&["\
 Writes levels.csv and levels.svg into DIR. The image error is equation 5.11 of Zhang & Turk 2002: the root of the summed \
 squared luma differences, flat, from the 20 corners of a dodecahedron; rms is the same per pixel, in levels. Distances \
 are the larger of both ways, in % of the diagonal of the original's bounding box. `less` says how much less image error \
 a method has than the first one, in %; 0 where neither has any. Its mean leaves out levels that either did not reach. \
-Folds are kept at every level, as by simplify --keep-folds.")]
+Folds are kept at every level, as by simplify --keep-folds.", file_help::PARTIAL]))]
 pub(super) struct LevelsArgs {
     /// The mesh to simplify: .obj, .ply or .stl
     #[arg(value_name = "IN")]
@@ -50,7 +49,7 @@ pub(super) struct LevelsArgs {
     /// Folder for the results; made if missing
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// The methods; the first is what the others are measured by
+    /// Methods without an error of their own; the others are measured by the first one
     #[arg(
         long,
         value_enum,
@@ -58,7 +57,7 @@ pub(super) struct LevelsArgs {
         value_name = "NAME,...",
         default_value = "quadric,visibility"
     )]
-    methods: Vec<Method>,
+    methods: Vec<MethodName>,
     /// The levels, in % of the triangles
     #[arg(long, value_delimiter = ',', value_name = "PERCENT,...", default_value = "50,25,12,6,3,1.5,0.75", value_parser = parse_percent)]
     levels: Vec<f64>,
@@ -87,17 +86,12 @@ pub(super) struct LevelsArgs {
     no_weld: bool,
 }
 
-/// Methods that need no other target than a number of triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Method {
-    /// Lindstrom & Turk 2000
-    Image,
-    /// Lindstrom & Turk 1998/99
-    Memoryless,
-    /// Garland & Heckbert 1997/98
-    Quadric,
-    /// Zhang & Turk 2002
-    Visibility,
+/// The refusal of a method that is held to an error and has no levels.
+fn bounded(method: MethodName) -> Error {
+    Error::Usage(format!(
+        "the method `{}` keeps to an error and has no levels; expected image, memoryless, quadric or visibility",
+        method.name()
+    ))
 }
 
 fn parse_percent(text: &str) -> Result<f64, String> {
@@ -123,8 +117,12 @@ impl LevelsArgs {
                 ));
             }
         }
-        if !self.methods.contains(&Method::Visibility)
-            && let Some((name, _)) = self.guidance.given().iter().find(|(_, given)| *given)
+        let bounds = [MethodName::Tolerance, MethodName::ViewBounded];
+        if let Some(&method) = self.methods.iter().find(|m| bounds.contains(m)) {
+            return Err(bounded(method));
+        }
+        if !self.methods.contains(&MethodName::Visibility)
+            && let Some(name) = self.guidance.first_given()
         {
             return Err(Error::Usage(format!(
                 "{name} means nothing without the method `visibility`; leave it out or add it to --methods"
@@ -156,7 +154,7 @@ impl LevelsArgs {
     /// Runs a method down to the last of `targets`; `visibility` was measured before, where it is given.
     fn run(
         &self,
-        method: Method,
+        method: MethodName,
         mesh: &Mesh,
         targets: &[usize],
         visibility: Option<&Visibility>,
@@ -169,10 +167,11 @@ impl LevelsArgs {
         };
         let amount = Target::Triangles(coarsest as u64);
         let mut options = match method {
-            Method::Image => RunOptions::image(amount),
-            Method::Memoryless => RunOptions::memoryless(amount),
-            Method::Quadric => RunOptions::quadric(amount),
-            Method::Visibility => RunOptions::visibility(amount),
+            MethodName::Image => RunOptions::image(amount),
+            MethodName::Memoryless => RunOptions::memoryless(amount),
+            MethodName::Quadric => RunOptions::quadric(amount),
+            MethodName::Visibility => RunOptions::visibility(amount),
+            MethodName::Tolerance | MethodName::ViewBounded => return Err(bounded(method)),
         };
         options.unfold = false;
         if self.topology_free {

@@ -9,7 +9,7 @@ use crate::{
 /// Options of the method `tolerance`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct DistanceArgs {
-    /// Tolerance method: largest distance between input and result, as a fraction of the bounding-box diagonal
+    /// Largest distance between input and result, as a fraction of the bounding-box diagonal
     #[arg(
         long,
         value_name = "E",
@@ -17,17 +17,17 @@ pub(super) struct DistanceArgs {
         conflicts_with = "error_abs"
     )]
     error: Option<f64>,
-    /// Tolerance method: largest distance between input and result, in the units of the file
+    /// Largest distance between input and result, in the units of the file
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     error_abs: Option<f64>,
-    /// Tolerance method: bound the distance from the result to the input only, not back
+    /// Bound the distance from the result to the input only, not back
     #[arg(long)]
     one_sided: bool,
-    /// Tolerance method: where other places are refused, try the best one in the tolerance volume (slow)
-    #[arg(long, value_enum)]
+    /// Where other places are refused, try the best one in the tolerance volume (slow)
+    #[arg(long, value_enum, hide_short_help = true)]
     volume: Option<Source>,
-    /// Tolerance method: a local bound that grows, as published (slow)
-    #[arg(long)]
+    /// A local bound that grows, as published (slow)
+    #[arg(long, hide_short_help = true)]
     growing: bool,
 }
 
@@ -35,17 +35,6 @@ impl DistanceArgs {
     /// True where an error is asked for.
     pub(super) fn has_error(&self) -> bool {
         self.error.is_some() || self.error_abs.is_some()
-    }
-
-    /// The names of all options, and which of them are given.
-    pub(super) fn given(&self) -> [(&'static str, bool); 5] {
-        [
-            ("--error", self.error.is_some()),
-            ("--error-abs", self.error_abs.is_some()),
-            ("--one-sided", self.one_sided),
-            ("--volume", self.volume.is_some()),
-            ("--growing", self.growing),
-        ]
     }
 
     /// The options of the library.

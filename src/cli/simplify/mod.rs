@@ -1,15 +1,19 @@
 //! `lodmark simplify`: one reduced mesh.
 
 mod distance_args;
+mod image_args;
+pub(super) mod option_table;
 mod run_log;
 mod view_bound_args;
 
 use std::{io::Write, path::PathBuf};
 
-use clap::{ArgGroup, ValueEnum};
+use clap::{ArgGroup, ArgMatches};
 use serde::Serialize;
 
-use super::{Common, Verdict, guidance_args::GuidanceArgs, input, report, terminal::Terminal};
+use super::{
+    Common, Verdict, file_help, guidance_args::GuidanceArgs, input, report, terminal::Terminal,
+};
 use crate::{
     Error, Result,
     collapse::{Schedule, Topology},
@@ -17,24 +21,19 @@ use crate::{
     io,
     mesh::{self, content_sha256},
     simplify::{
-        MethodOptions, Options as RunOptions, Stop, Target,
-        image::{
-            Comparison, DrivingShading, EngineName, ImageOptions, Polish, PolishCounters, Preset,
-            Size, Start,
-        },
-        memoryless::MemorylessOptions,
-        quadric::QuadricOptions,
+        MethodName, MethodOptions, Options as RunOptions, Stop, Target,
+        image::{Comparison, PolishCounters},
         simplify_guided, simplify_with,
         tolerance::Guarantee,
-        visibility::VisibilityOptions,
     },
-    view::ViewsName,
 };
 use distance_args::DistanceArgs;
+use image_args::ImageArgs;
 use view_bound_args::ViewBoundArgs;
 
 /// Write a mesh with fewer triangles that looks the same
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = file_help::paragraphs(&[&file_help::cells(), &file_help::views(), file_help::HISTORY, file_help::PARTIAL, file_help::CORRESPONDENCE]))]
 #[command(group(ArgGroup::new("amount").args(["triangles", "ratio"])))]
 pub(super) struct SimplifyArgs {
     /// The mesh to simplify: .obj, .ply or .stl
@@ -44,58 +43,43 @@ pub(super) struct SimplifyArgs {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Simplify to at most this many triangles
-    #[arg(long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = input::parse_triangles::<u64>)]
+    #[arg(help_heading = "Target", long, short = 't', value_name = "N", allow_negative_numbers = true, value_parser = input::parse_triangles::<u64>)]
     triangles: Option<u64>,
     /// Simplify to at most this share of the triangles, above 0 and up to 1
-    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    #[arg(
+        help_heading = "Target",
+        long,
+        value_name = "R",
+        allow_negative_numbers = true
+    )]
     ratio: Option<f64>,
     /// Stop before the RMS luma difference over the driving views exceeds this, 0 to 255 (method image)
-    #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
+    #[arg(
+        help_heading = "Target",
+        long,
+        value_name = "LEVELS",
+        allow_negative_numbers = true
+    )]
     error_rms: Option<f64>,
-    /// What orders the collapses
-    #[arg(long, value_enum, default_value_t = Method::Image)]
-    method: Method,
-    /// Image method: the recipe [default: default]
-    #[arg(long, value_enum)]
-    preset: Option<PresetName>,
-    /// Image method: dodecahedron, rhombicuboctahedron, octahedron:K, spiral:N, or a view file [default: by preset]
-    #[arg(long, value_name = "SET|FILE")]
-    views: Option<ViewsName>,
-    /// Image method: width and height of the driving images [default: by preset]
-    #[arg(long, value_name = "PIXELS")]
-    size: Option<u32>,
-    /// Image method: samples per pixel along each axis of the driving images: 1, 2 or 4 [default: by preset]
-    #[arg(long, value_name = "N")]
-    samples: Option<u32>,
-    /// Image method: the shading that the result will be seen with [default: flat]
-    #[arg(long, value_enum)]
-    shading: Option<ShadingName>,
-    /// Image method: how many of the views look through the front into the interior
-    #[arg(long, value_name = "K")]
-    interior_views: Option<usize>,
-    /// Image method: triangles at which images take over from the memoryless method, or `none`
-    #[arg(long, value_name = "N|none", value_parser = parse_start)]
-    start_triangles: Option<Start>,
-    /// Image method: sweeps that move vertices and flip edges after the last collapse; 0 is none [default: by preset]
-    #[arg(long, value_name = "SWEEPS")]
-    polish: Option<u32>,
-    /// Image method: how pictures follow the mesh; never changes a result
-    #[arg(long, value_enum)]
-    engine: Option<EngineChoice>,
+    /// The rule that orders the collapses
+    #[arg(long, value_enum, default_value_t = MethodName::Image)]
+    method: MethodName,
     /// When edges are evaluated again; eager is slow and for comparison [default: by preset]
-    #[arg(long, value_enum)]
-    evaluation: Option<Evaluation>,
+    #[arg(long, value_enum, hide_short_help = true)]
+    evaluation: Option<Schedule>,
     /// Measure the true rank of every K-th collapse among all legal ones; slow, changes no result
-    #[arg(long, value_name = "K", default_value_t = 0)]
+    #[arg(long, value_name = "K", default_value_t = 0, hide_short_help = true)]
     measure_rank: u64,
     /// Leave folds and flipped faces as the collapses made them; then every level of the history is a direct run's
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     keep_folds: bool,
     /// Whether holes may close and parts may merge
-    #[arg(long, value_enum, default_value_t = TopologyName::Preserve)]
-    topology: TopologyName,
-    /// Quadric and visibility methods: planes with uncertainty (Trettner & Kobbelt 2020)
-    #[arg(long)]
+    #[arg(long, value_enum, default_value_t = Topology::Preserve)]
+    topology: Topology,
+    #[command(flatten)]
+    image: ImageArgs,
+    /// Planes with uncertainty (Trettner & Kobbelt 2020)
+    #[arg(long, hide_short_help = true)]
     probabilistic: bool,
     #[command(flatten)]
     guidance: GuidanceArgs,
@@ -104,97 +88,17 @@ pub(super) struct SimplifyArgs {
     #[command(flatten)]
     within: DistanceArgs,
     /// Write the history of collapses, moves and flips, for `lodmark replay`
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Output", long, value_name = "FILE")]
     history: Option<PathBuf>,
     /// Do not unite vertices with equal positions
     #[arg(long)]
     no_weld: bool,
     /// Exit with code 6, writing nothing, where the target is not reached
-    #[arg(long)]
+    #[arg(help_heading = "Output", long)]
     strict: bool,
 }
 
-/// Methods by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Method {
-    /// By what a collapse does to pictures (Lindstrom & Turk 2000)
-    Image,
-    /// By swept volumes (Lindstrom & Turk 1998/99)
-    Memoryless,
-    /// By distances to planes (Garland & Heckbert 1997/98)
-    Quadric,
-    /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002)
-    Visibility,
-    /// Within a distance of the input, guaranteed (after Cox & Chibelushi 2005)
-    Tolerance,
-    /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007)
-    ViewBounded,
-}
-
-/// [`Preset`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum PresetName {
-    /// The published method to the letter
-    Paper,
-    /// Few small pictures and one sweep of polishing
-    Fast,
-    /// 42 views and polishing: the best meshes for the time that geometric methods take
-    Default,
-    /// More views, larger pictures and more polishing: several times the time for a few percent
-    Best,
-}
-
-/// [`DrivingShading`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ShadingName {
-    /// One intensity per triangle
-    Flat,
-    /// Interpolated intensities
-    Gouraud,
-    /// Every other view interpolated, for a result that is seen both ways
-    Mixed,
-}
-
-/// [`EngineName`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum EngineChoice {
-    /// All fragments of every sample, sorted
-    Layers,
-    /// Row and column buckets: the published way, much slower
-    Buckets,
-}
-
-/// [`Schedule`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Evaluation {
-    /// At the front of the queue
-    Lazy,
-    /// At once at the new vertex, otherwise lazy
-    Semi,
-    /// At once
-    Eager,
-}
-
-/// [`Topology`] by name.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum TopologyName {
-    /// Holes, handles and parts stay
-    Preserve,
-    /// Any edge may collapse
-    Free,
-}
-
-fn parse_start(text: &str) -> Result<Start, String> {
-    if text == "none" {
-        return Ok(Start::Input);
-    }
-    match text.parse() {
-        Ok(0) | Err(_) => Err("expected a number of triangles, at least 1, or `none`".into()),
-        Ok(n) => Ok(Start::Triangles(n)),
-    }
-}
-
-/// What the report says about the result.
+/// The result, for the report.
 #[derive(Debug, Serialize)]
 struct Summary<'a> {
     input: &'a PathBuf,
@@ -208,7 +112,7 @@ struct Summary<'a> {
     /// V(M) of the input; only for the method that is guided by it.
     v_mesh: Option<f64>,
     phases: &'a [crate::simplify::Phase],
-    /// What is proved about the distance from the input; only for the method that keeps one.
+    /// The proven distance from the input; only for the method that keeps one.
     #[serde(skip_serializing_if = "Option::is_none")]
     guarantee: Option<Guarantee>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -220,7 +124,7 @@ struct Summary<'a> {
 }
 
 impl SimplifyArgs {
-    /// The options of the library; refuses what the method cannot honour.
+    /// The options of the library.
     fn resolve(&self) -> Result<RunOptions> {
         let target = match (self.triangles, self.ratio) {
             (Some(n), _) => Target::Triangles(n),
@@ -240,138 +144,25 @@ impl SimplifyArgs {
                 ));
             }
         };
-        let preset = match self.preset.unwrap_or(PresetName::Default) {
-            PresetName::Paper => Preset::Paper,
-            PresetName::Fast => Preset::Fast,
-            PresetName::Default => Preset::Default,
-            PresetName::Best => Preset::Best,
-        };
-        let method = match self.method {
-            Method::Image => MethodOptions::Image(self.image(preset)),
-            Method::Memoryless => MethodOptions::Memoryless(MemorylessOptions::default()),
-            Method::Quadric => MethodOptions::Quadric(self.quadric()),
-            Method::Visibility => MethodOptions::Visibility(VisibilityOptions {
-                quadric: self.quadric(),
-                ..self.guidance.options()
-            }),
-            Method::ViewBounded => MethodOptions::ViewBounded(self.view_bound.options()?),
-            Method::Tolerance => MethodOptions::Tolerance(self.within.options()?),
-        };
-        self.refuse_foreign(&method)?;
+        let method = option_table::method_options(self)?;
         let mut options = RunOptions::new(method, target);
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
         options.unfold &= !self.keep_folds;
-        options.schedule = match self.evaluation {
-            Some(Evaluation::Lazy) => Schedule::Lazy,
-            Some(Evaluation::Semi) => Schedule::Semi,
-            Some(Evaluation::Eager) => Schedule::Eager,
-            None => options.schedule,
-        };
-        options.rules.topology = match self.topology {
-            TopologyName::Preserve => Topology::Preserve,
-            TopologyName::Free => Topology::Free,
-        };
+        options.schedule = self.evaluation.unwrap_or(options.schedule);
+        options.rules.topology = self.topology;
         options.check()?;
         Ok(options)
     }
-
-    fn quadric(&self) -> QuadricOptions {
-        if self.probabilistic {
-            QuadricOptions::probabilistic()
-        } else {
-            QuadricOptions::default()
-        }
-    }
-
-    fn image(&self, preset: Preset) -> ImageOptions {
-        let default = preset.shaded(match self.shading {
-            None | Some(ShadingName::Flat) => DrivingShading::Flat,
-            Some(ShadingName::Gouraud) => DrivingShading::Gouraud,
-            Some(ShadingName::Mixed) => DrivingShading::Mixed,
-        });
-        ImageOptions {
-            views: self.views.clone().unwrap_or(default.views),
-            size: self.size.map_or(default.size, Size::Pixels),
-            samples: self.samples.unwrap_or(default.samples),
-            interior_views: self.interior_views.unwrap_or(default.interior_views),
-            start: self.start_triangles.unwrap_or(default.start),
-            polish: Polish {
-                sweeps: self.polish.unwrap_or(default.polish.sweeps),
-                ..default.polish
-            },
-            engine: match self.engine {
-                None => default.engine,
-                Some(EngineChoice::Layers) => EngineName::Layers,
-                Some(EngineChoice::Buckets) => EngineName::Buckets,
-            },
-            ..default
-        }
-    }
-
-    /// An option that the chosen method would ignore is an error.
-    fn refuse_foreign(&self, method: &MethodOptions) -> Result<()> {
-        let image = [
-            ("--preset", self.preset.is_some()),
-            ("--views", self.views.is_some()),
-            ("--size", self.size.is_some()),
-            ("--samples", self.samples.is_some()),
-            ("--shading", self.shading.is_some()),
-            ("--interior-views", self.interior_views.is_some()),
-            ("--start-triangles", self.start_triangles.is_some()),
-            ("--polish", self.polish.is_some()),
-            ("--engine", self.engine.is_some()),
-        ];
-        let quadric = [("--probabilistic", self.probabilistic)];
-        let ordering = [("--keep-folds", self.keep_folds)];
-        let guidance = self.guidance.given();
-        let bound = self.view_bound.given();
-        let distance = self.within.given();
-        let foreign: &[(&str, bool)] = match method {
-            MethodOptions::Image(_) => {
-                &[quadric.as_slice(), &ordering, &guidance, &bound, &distance].concat()
-            }
-            MethodOptions::Memoryless(_) => {
-                &[image.as_slice(), &quadric, &guidance, &bound, &distance].concat()
-            }
-            MethodOptions::Quadric(_) => &[image.as_slice(), &guidance, &bound, &distance].concat(),
-            MethodOptions::Visibility(_) => &[image.as_slice(), &bound, &distance].concat(),
-            MethodOptions::Tolerance(_) => {
-                &[image.as_slice(), &quadric, &ordering, &guidance, &bound].concat()
-            }
-            MethodOptions::ViewBounded(_) => {
-                &[image.as_slice(), &quadric, &ordering, &guidance, &distance].concat()
-            }
-        };
-        if let Some((name, _)) = foreign.iter().find(|(_, given)| *given) {
-            return Err(Error::Usage(format!(
-                "{name} means nothing to the method `{}`; leave it out or choose another --method",
-                method.name()
-            )));
-        }
-        if let (
-            MethodOptions::Image(ImageOptions {
-                views: ViewsName::File(path),
-                ..
-            }),
-            true,
-        ) = (
-            method,
-            self.size.is_some()
-                || self.samples.is_some()
-                || self.shading.is_some()
-                || self.interior_views.is_some(),
-        ) {
-            return Err(Error::Usage(format!(
-                "--size, --samples, --shading and --interior-views are part of the view file {}; leave them out",
-                path.display()
-            )));
-        }
-        Ok(())
-    }
 }
 
-pub(super) fn run(options: &SimplifyArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+pub(super) fn run(
+    options: &SimplifyArgs,
+    matches: &ArgMatches,
+    common: &Common,
+    terminal: &Terminal,
+) -> Result<Verdict> {
+    option_table::refuse_foreign(options.method, matches)?;
     let resolved = options.resolve()?;
     io::writable_format(&options.output)?;
     let outputs = [

@@ -14,10 +14,10 @@ use crate::{
 /// Options of the method `view-bounded`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct ViewBoundArgs {
-    /// View-bounded method: the viewpoints that the bound holds for, a JSON cell file
+    /// The viewpoints that the bound holds for, a JSON cell file
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
-    /// View-bounded method: the largest angle between a point and what stands for it, in degrees, 0 to below 90
+    /// The largest angle between a point and what stands for it, in degrees, 0 to below 90
     #[arg(
         long,
         value_name = "DEGREES",
@@ -25,7 +25,7 @@ pub(super) struct ViewBoundArgs {
         conflicts_with = "error_px"
     )]
     error_deg: Option<f64>,
-    /// View-bounded method: the same as pixels in the middle of a screen; needs --screen-height
+    /// The same as pixels in the middle of a screen; needs --screen-height
     #[arg(
         long,
         value_name = "PIXELS",
@@ -33,13 +33,13 @@ pub(super) struct ViewBoundArgs {
         requires = "screen_height"
     )]
     error_px: Option<f64>,
-    /// View-bounded method: height of the screen for --error-px
+    /// Height of the screen for --error-px
     #[arg(long, value_name = "PIXELS", requires = "error_px", value_parser = clap::value_parser!(u32).range(1..))]
     screen_height: Option<u32>,
-    /// View-bounded method: vertical field of view for --error-px, in degrees [default: 60]
+    /// Vertical field of view for --error-px, in degrees [default: 60]
     #[arg(long, value_name = "DEGREES", requires = "error_px")]
     fov: Option<f64>,
-    /// View-bounded method: write which part of OUT stands for which part of IN, for `lodmark verify --bound`
+    /// Write which part of OUT stands for which part of IN, for `lodmark verify --bound`
     #[arg(long, value_name = "FILE")]
     bound_out: Option<PathBuf>,
 }
@@ -48,18 +48,6 @@ impl ViewBoundArgs {
     /// True where an error is asked for.
     pub(super) fn has_error(&self) -> bool {
         self.error_deg.is_some() || self.error_px.is_some()
-    }
-
-    /// The names of all options, and which of them are given.
-    pub(super) fn given(&self) -> [(&'static str, bool); 6] {
-        [
-            ("--cell", self.cell.is_some()),
-            ("--error-deg", self.error_deg.is_some()),
-            ("--error-px", self.error_px.is_some()),
-            ("--screen-height", self.screen_height.is_some()),
-            ("--fov", self.fov.is_some()),
-            ("--bound-out", self.bound_out.is_some()),
-        ]
     }
 
     /// The file that is written beside the mesh.

@@ -7,6 +7,7 @@ use crate::collapse::{Evaluation, LiveMesh, Proposal};
 
 /// Time at which an edge whose star changed is evaluated again, roughly where the method's plan says so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Schedule {
     /// When it comes to the front of the queue (Lindstrom & Turk 2000, section 4.2.2).

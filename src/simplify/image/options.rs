@@ -96,6 +96,7 @@ impl From<u32> for Size {
 
 /// Shading of the driving views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum DrivingShading {
     /// All flat.
@@ -122,6 +123,7 @@ impl DrivingShading {
 
 /// The engine by which pictures find the surface behind a removed triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum EngineName {
     /// All fragments of every sample, sorted.

@@ -26,6 +26,7 @@ use crate::{collapse::Schedule, view::ViewsName};
 
 /// A recipe for image-driven simplification. Sides of pictures are those for 1,333 triangles; see [`Size`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
     /// The published method to the letter: 20 views of 256 x 256 pixels, lazy evaluation, no polishing.

@@ -3,6 +3,7 @@
 mod bound;
 mod compare;
 mod exit_codes;
+mod help;
 mod levels;
 mod odd_files;
 mod replay;
