@@ -1,5 +1,7 @@
 //! A rectangle of pixels.
 
+use crate::num::fixed::SubpixelBits;
+
 /// Pixels with `x0 <= x < x1` and `y0 <= y < y1`; empty where a lower bound is not below its upper bound.
 ///
 /// A region limits loops over pixels. It never clips geometry.
@@ -32,6 +34,25 @@ impl PixelRect {
             y0: 0,
             x1: width as i32,
             y1: height as i32,
+        }
+    }
+
+    /// Pixels whose centres lie in a box of sub-pixels, borders included; the snapped corners of a triangle span it.
+    #[inline]
+    #[must_use]
+    pub fn with_centers_in(
+        [x_min, x_max]: [i32; 2],
+        [y_min, y_max]: [i32; 2],
+        bits: SubpixelBits,
+    ) -> Self {
+        let half = bits.scale() / 2;
+        let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
+        let last = |v: i32| (v - half) >> bits.bits();
+        Self {
+            x0: first(x_min),
+            y0: first(y_min),
+            x1: last(x_max) + 1,
+            y1: last(y_max) + 1,
         }
     }
 

@@ -112,12 +112,18 @@ impl Setup {
     fn depth_of(&self, w: [i64; 3]) -> u32 {
         let z = self.depth_above.map(i64::from);
         let above = w[0] * z[0] + w[1] * z[1] + w[2] * z[2];
-        // A quotient of two numbers below 2^32 takes the short division of the processor.
-        if (above | self.area) >> 32 == 0 {
-            self.depth_min + (above as u32 / self.area as u32)
-        } else {
-            self.depth_min + (above / self.area) as u32
-        }
+        self.depth_min + quotient(above, self.area)
+    }
+}
+
+/// `floor(above / area)` of a covered pixel: `above` is not negative, and the quotient a difference of depths.
+#[inline]
+pub(super) fn quotient(above: i64, area: i64) -> u32 {
+    // A quotient of two numbers below 2^32 takes the short division of the processor.
+    if (above | area) >> 32 == 0 {
+        above as u32 / area as u32
+    } else {
+        (above / area) as u32
     }
 }
 

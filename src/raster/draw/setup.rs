@@ -25,7 +25,7 @@ impl EdgeFunction {
             dx: -dy << bits.bits(),
             dy: dx << bits.bits(),
             c: dx * (half - i64::from(from.y)) - dy * (half - i64::from(from.x)),
-            bias: i64::from(!(dy < 0 || (dy == 0 && dx > 0))),
+            bias: i64::from(!is_top_left(dx, dy)),
         }
     }
 
@@ -34,6 +34,14 @@ impl EdgeFunction {
     pub(super) fn at(&self, x: i32, y: i32) -> i64 {
         self.dx * i64::from(x) + self.dy * i64::from(y) + self.c
     }
+}
+
+/// True for top and left edges, whose points belong to the triangle: `dx` and `dy` lead along it with the inside on the
+/// positive side, y downwards.
+#[inline]
+pub(super) fn is_top_left<T: Ord + Default>(dx: T, dy: T) -> bool {
+    let zero = T::default();
+    dy < zero || (dy == zero && dx > zero)
 }
 
 /// A triangle ready to be drawn: positive area, starting at its lexicographically smallest corner.
@@ -68,12 +76,14 @@ impl Setup {
         cull: Cull,
         image: PixelRect,
     ) -> Option<Self> {
-        let bounds = pixel_bounds(&corners, bits).intersection(image);
+        let [a, b, c] = corners;
+        let columns = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
+        let rows = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
+        let bounds = PixelRect::with_centers_in(columns, rows, bits).intersection(image);
         if bounds.is_empty() {
             return None;
         }
         let mut order = [0_u8, 1, 2];
-        let [a, b, c] = corners;
         let area = (i64::from(b.x) - i64::from(a.x)) * (i64::from(c.y) - i64::from(a.y))
             - (i64::from(b.y) - i64::from(a.y)) * (i64::from(c.x) - i64::from(a.x));
         // y points down: a triangle that is counter-clockwise on the screen has a negative area here.
@@ -147,21 +157,6 @@ impl Setup {
         let sum = (w0 + w1) + w2;
         let [a, b, c] = self.order.map(|i| &attributes[i as usize]);
         std::array::from_fn(|k| ((w0 * a[k] + w1 * b[k]) + w2 * c[k]) / sum)
-    }
-}
-
-/// Pixels whose centres lie in the bounding box of the corners.
-#[inline]
-fn pixel_bounds(corners: &[ScreenVertex; 3], bits: SubpixelBits) -> PixelRect {
-    let [a, b, c] = corners;
-    let half = bits.scale() / 2;
-    let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
-    let last = |v: i32| (v - half) >> bits.bits();
-    PixelRect {
-        x0: first(a.x.min(b.x).min(c.x)),
-        y0: first(a.y.min(b.y).min(c.y)),
-        x1: last(a.x.max(b.x).max(c.x)) + 1,
-        y1: last(a.y.max(b.y).max(c.y)) + 1,
     }
 }
 

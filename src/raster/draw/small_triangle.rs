@@ -5,7 +5,7 @@
 //! sub-pixel bits) stay below 2^30 inside the box. Pixels of the box are tested by sign and written to a list whose
 //! length grows by the outcome; depths are divided by multiplication with the reciprocal and corrected exactly.
 
-use super::{PixelRect, projector::ScreenPoint};
+use super::{PixelRect, projector::ScreenPoint, setup::is_top_left};
 use crate::{num::fixed::SubpixelBits, view::Cull};
 
 /// Longest side of the bounding box, in sub-pixels.
@@ -67,7 +67,8 @@ impl SmallTriangle {
     ) -> Fit {
         let (x_min, x_max) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
         let (y_min, y_max) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        let bounds = bounds([x_min, y_min, x_max, y_max], bits).intersection(image);
+        let bounds =
+            PixelRect::with_centers_in([x_min, x_max], [y_min, y_max], bits).intersection(image);
         if bounds.is_empty() {
             return Fit::Nothing;
         }
@@ -108,7 +109,7 @@ impl SmallTriangle {
             let z = i64::from(depth - depth_min);
             let (step_x, step_y) = (-(dy << bits.bits()), dx << bits.bits());
             let e = (dx * (py - from.y)).wrapping_sub(dy * (px - from.x));
-            small.edges[i] = e - i32::from(!(dy < 0 || (dy == 0 && dx > 0)));
+            small.edges[i] = e - i32::from(!is_top_left(dx, dy));
             small.step_x[i] = step_x;
             small.step_y[i] = step_y;
             small.above = small.above.wrapping_add(i64::from(e).wrapping_mul(z));
@@ -219,23 +220,6 @@ impl SmallTriangle {
         self.depth_min
             .wrapping_add(nearest)
             .wrapping_add((rest >> 63) as u32)
-    }
-}
-
-/// Pixels whose centres lie in `[x_min, y_min, x_max, y_max]`, in sub-pixels.
-#[inline]
-pub(in crate::raster) fn bounds(
-    [x_min, y_min, x_max, y_max]: [i32; 4],
-    bits: SubpixelBits,
-) -> PixelRect {
-    let half = bits.scale() / 2;
-    let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
-    let last = |v: i32| (v - half) >> bits.bits();
-    PixelRect {
-        x0: first(x_min),
-        y0: first(y_min),
-        x1: last(x_max) + 1,
-        y1: last(y_max) + 1,
     }
 }
 

@@ -6,7 +6,10 @@
 //! associative, so parts of the triangles can be drawn on their own and merged, and neither the number of parts nor
 //! the order of triangles changes a bit.
 
-use super::{Drawn, Grid, Paint, PixelRect, Projector, SampleKey, Scene, projector::ScreenPoint};
+use super::{
+    Drawn, Grid, Paint, PixelRect, Projector, SampleKey, Scene, coverage::quotient,
+    projector::ScreenPoint, setup::is_top_left,
+};
 use crate::{
     num::fixed::SubpixelBits,
     parallel,
@@ -140,15 +143,8 @@ fn draw_part(
             dropped += u64::from(draw_any(scene, view, projector, t, keys));
             continue;
         }
-        // Samples whose centres the bounding box contains.
-        let half = bits.scale() / 2;
-        let hull = PixelRect {
-            x0: (left - half + bits.scale() - 1) >> bits.bits(),
-            y0: (top - half + bits.scale() - 1) >> bits.bits(),
-            x1: ((right - half) >> bits.bits()) + 1,
-            y1: ((bottom - half) >> bits.bits()) + 1,
-        };
-        if hull.x0 >= hull.x1 || hull.y0 >= hull.y1 {
+        let hull = PixelRect::with_centers_in([left, right], [top, bottom], bits);
+        if hull.is_empty() {
             continue;
         }
         if hull.x1 - hull.x0 > SMALL || hull.y1 - hull.y0 > SMALL {
@@ -216,7 +212,7 @@ fn draw_small(
     let edge = |from: ScreenPoint, to: ScreenPoint| {
         let (dx, dy) = (difference(from.x, to.x), difference(from.y, to.y));
         let value = dx * difference(from.y, y) - dy * difference(from.x, x);
-        let bias = i64::from(!(dy < 0 || (dy == 0 && dx > 0)));
+        let bias = i64::from(!is_top_left(dx, dy));
         (value, -dy << bits.bits(), dx << bits.bits(), bias)
     };
     let (mut row0, x0, y0, bias0) = edge(b, c);
@@ -229,13 +225,8 @@ fn draw_small(
             // No depth of the triangle is nearer than its nearest corner.
             if ((w0 - bias0) | (w1 - bias1) | (w2 - bias2)) >= 0 && nearest < *key {
                 let sum = w0 * above[0] + w1 * above[1] + w2 * above[2];
-                // A quotient of two numbers below 2^32 takes the short division of the processor.
-                let depth = if (sum | area) >> 32 == 0 {
-                    sum as u32 / area as u32
-                } else {
-                    (sum / area) as u32
-                };
-                *key = (*key).min(SampleKey::new(depth_min + depth, id));
+                let depth = depth_min + quotient(sum, area);
+                *key = (*key).min(SampleKey::new(depth, id));
             }
             w0 += x0;
             w1 += x1;

@@ -5,10 +5,7 @@ use glam::DVec3;
 
 use crate::{
     num::fixed::SubpixelBits,
-    raster::{
-        Face, PixelRect, Projector, ScreenVertex,
-        draw::{projector::ScreenPoint, small_triangle},
-    },
+    raster::{Face, PixelRect, Projector, ScreenVertex, draw::projector::ScreenPoint},
 };
 
 /// Columns, rows and depths of one vertex in every view: three runs of `lanes` values.
@@ -188,8 +185,12 @@ impl ScreenBoxes {
         if x_min == i32::MAX {
             return Some(PixelRect::EMPTY);
         }
-        let extent = [x_min, self.y_min[lane], self.x_max[lane], self.y_max[lane]];
-        Some(small_triangle::bounds(extent, bits))
+        let rows = [self.y_min[lane], self.y_max[lane]];
+        Some(PixelRect::with_centers_in(
+            [x_min, self.x_max[lane]],
+            rows,
+            bits,
+        ))
     }
 
     /// The least depth of the vertices in the box of a view.
