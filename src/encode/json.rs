@@ -1,11 +1,11 @@
-//! JSON reports: equal values give equal bytes.
+//! JSON reports, in which equal values give equal bytes, and the reading of JSON files with a schema.
 //!
 //! Two spaces of indentation, keys in the order of the structure (sorted in a [`serde_json::Value`]), one newline at
 //! the end, floats as the shortest decimal that reads back to the same bits, and `null` for those that are not finite.
 
-use std::path::Path;
+use std::{fs::File, io::Read, path::Path};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::atomic;
 use crate::{Error, Result};
@@ -28,4 +28,39 @@ pub fn to_text(report: &impl Serialize) -> Result<String> {
 pub fn write(path: &Path, report: &impl Serialize) -> Result<()> {
     let text = to_text(report)?;
     atomic::write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Reads a whole text file of at most `limit` bytes; `kind` is named in errors.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] for more bytes, or bytes that are no UTF-8.
+pub fn read_text(path: &Path, limit: u64, kind: &str) -> Result<String> {
+    let mut bytes = Vec::new();
+    // By what is read, not by what is claimed: a pipe or device has no size.
+    File::open(path)
+        .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
+        .map_err(|e| Error::io("read", path, e))?;
+    if bytes.len() as u64 > limit {
+        let told = format!("more than {limit} bytes; expected a {kind} of at most that");
+        return Err(Error::input(path, told));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        Error::input(
+            path,
+            format!("{}; expected a {kind} (JSON)", e.utf8_error()),
+        )
+    })
+}
+
+/// The number of the schema of a JSON text. Read first, so that a later schema fails with its number and not with a field
+/// that this version does not know.
+///
+/// # Errors
+/// Those of `serde_json`.
+pub fn schema_of(text: &str) -> serde_json::Result<u32> {
+    #[derive(Deserialize)]
+    struct Version {
+        schema: u32,
+    }
+    serde_json::from_str(text).map(|version: Version| version.schema)
 }

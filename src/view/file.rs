@@ -25,13 +25,17 @@
 //! Lengths are in the units of the mesh file; axes and directions have length 1. Numbers that are neither whole nor in
 //! a matrix are written with the digits that give the same double back.
 
-use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Cull, Eye, Light, Matrix, Shading, View, ViewSet};
-use crate::{Error, Result, num::fixed::SubpixelBits, num::math};
+use crate::{
+    Error, Result,
+    encode::json,
+    num::{fixed::SubpixelBits, math},
+};
 
 /// The version of the schema that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
@@ -135,10 +139,7 @@ pub fn to_json(set: &ViewSet, hashes: &[ImageHashes]) -> Result<String> {
         view.check()
             .map_err(|what| Error::Internal(format!("view {i} cannot be written: {what}")))?;
     }
-    let mut text = serde_json::to_string_pretty(&record)
-        .map_err(|e| Error::Internal(format!("views as JSON: {e}")))?;
-    text.push('\n');
-    Ok(text)
+    json::to_text(&record)
 }
 
 /// The views in the text of a view file, in units of the mesh file; `path` is named in errors.
@@ -155,16 +156,10 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
              a whole one is\n{EXAMPLE}"
         ))
     };
-    // The version first: a later schema fails with its number, not with a field this version does not know.
-    #[derive(Deserialize)]
-    struct Version {
-        schema: u32,
-    }
-    let version: Version = serde_json::from_str(text).map_err(malformed)?;
-    if version.schema != SCHEMA {
+    let schema = json::schema_of(text).map_err(malformed)?;
+    if schema != SCHEMA {
         return Err(refused(format!(
-            "schema {}; this version reads schema {SCHEMA}",
-            version.schema
+            "schema {schema}; this version reads schema {SCHEMA}"
         )));
     }
     let record: SetRecord = serde_json::from_str(text).map_err(malformed)?;
@@ -205,20 +200,7 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
 /// [`Error::Io`], or as [`from_json`].
 pub fn read(path: impl AsRef<Path>) -> Result<ViewSet> {
     let path = path.as_ref();
-    let mut bytes = Vec::new();
-    // By what is read, not by what is claimed: a pipe or device has no size.
-    File::open(path)
-        .and_then(|file| file.take(SIZE_LIMIT + 1).read_to_end(&mut bytes))
-        .map_err(|e| Error::io("read", path, e))?;
-    if bytes.len() as u64 > SIZE_LIMIT {
-        return Err(Error::input(
-            path,
-            format!("more than {SIZE_LIMIT} bytes; expected a view file of at most that"),
-        ));
-    }
-    let text = std::str::from_utf8(&bytes)
-        .map_err(|e| Error::input(path, format!("{e}; expected a view file (JSON)")))?;
-    from_json(text, path)
+    from_json(&json::read_text(path, SIZE_LIMIT, "view file")?, path)
 }
 
 /// The bits of a matrix, row by row.

@@ -13,7 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("geometry", &["error", "num"]),
     ("mesh", &["error", "num", "geometry"]),
     ("io", &["error", "num", "encode", "geometry", "mesh"]),
-    ("view", &["error", "num", "geometry", "mesh"]),
+    ("view", &["error", "num", "encode", "geometry", "mesh"]),
     (
         "raster",
         &["error", "progress", "num", "geometry", "mesh", "view"],
@@ -30,7 +30,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "error", "progress", "num", "encode", "geometry", "mesh", "view", "raster",
         ],
     ),
-    ("bound", &["error", "progress", "num", "geometry", "mesh"]),
+    (
+        "bound",
+        &["error", "progress", "num", "encode", "geometry", "mesh"],
+    ),
     (
         "collapse",
         &["error", "progress", "num", "encode", "geometry", "mesh"],

@@ -1,4 +1,5 @@
-//! A correspondence as bytes, for programs that check it or carry textures over.
+//! A correspondence as bytes, for programs that check it or carry textures over: `lodmark simplify --method view-bounded
+//! --bound-out FILE` writes it, `lodmark verify --bound FILE` and `lodmark bound --correspondence FILE` read it.
 //!
 //! Little-endian: magic `LODMCORR`, format version (u32, 1), SHA-256 of the original and of the simplified surface, number
 //! of triangles of both (u32 each), number of pieces (u64); then for every original triangle, in order, the number of its

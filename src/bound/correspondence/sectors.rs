@@ -120,83 +120,98 @@ impl Sectors {
         scratch: &mut CutScratch,
         mut visit: impl FnMut(&Part, &[Corner]) -> Option<bool>,
     ) -> Option<bool> {
-        let CutScratch {
-            sectors,
-            events,
-            crossings,
-            links,
-            visited,
-            polygon,
-        } = scratch;
-        sectors.clear();
-        sectors.extend(outline.iter().map(|c| self.sector_of(c.plane)));
-        let first = sectors[0];
-        if sectors.iter().all(|&s| s == first) {
+        scratch.sectors.clear();
+        let sectors = outline.iter().map(|c| self.sector_of(c.plane));
+        scratch.sectors.extend(sectors);
+        let first = scratch.sectors[0];
+        if scratch.sectors.iter().all(|&s| s == first) {
             return visit(&self.sectors[first], outline);
         }
-        let around = self.walk(outline, sectors, events)?;
-        if events.len() == outline.len() {
-            return visit(&self.sectors[sectors[0]], outline);
+        let around = self.walk(outline, &mut scratch.sectors, &mut scratch.events)?;
+        if scratch.events.len() == outline.len() {
+            return visit(&self.sectors[scratch.sectors[0]], outline);
         }
-        self.link(events, around, crossings, links)?;
+        self.link(
+            &scratch.events,
+            around,
+            &mut scratch.crossings,
+            &mut scratch.links,
+        )?;
         let hub = around.then(|| Corner {
             source: hub_source(outline, self.hub),
             plane: self.hub,
             fixed: false,
         });
-        visited.clear();
-        visited.resize(events.len(), false);
-        for start in 0..events.len() {
-            let Event::Crossing { spoke, forward, .. } = events[start] else {
+        scratch.visited.clear();
+        scratch.visited.resize(scratch.events.len(), false);
+        for start in 0..scratch.events.len() {
+            let Event::Crossing { spoke, forward, .. } = scratch.events[start] else {
                 continue;
             };
-            if visited[start] {
+            if scratch.visited[start] {
                 continue;
             }
             let sector = self.behind(spoke, forward);
-            polygon.clear();
-            let mut at = start;
-            while !visited[at] {
-                visited[at] = true;
-                let mut leave = at;
-                loop {
-                    match events[leave] {
-                        Event::Corner(corner) | Event::Crossing { at: corner, .. } => {
-                            polygon.push(corner);
-                        }
-                    }
-                    let crossed = matches!(events[leave], Event::Crossing { .. });
-                    if crossed && leave != at {
-                        break;
-                    }
-                    leave = (leave + 1) % events.len();
-                    if leave == at {
-                        // A single crossing has nothing to lead back through.
-                        return None;
-                    }
-                }
-                at = match links[leave] {
-                    Link::Crossing(other) => other,
-                    Link::Hub => {
-                        polygon.extend(hub);
-                        let entry = |i: &usize| {
-                            links[*i] == Link::Hub
-                                && matches!(events[*i], Event::Crossing { spoke, forward: true, .. }
-                                    if self.behind(spoke, true) == sector)
-                        };
-                        (0..events.len()).find(entry)?
-                    }
-                    Link::Open => return None,
-                };
-            }
-            if at != start {
-                return None;
-            }
-            if !visit(&self.sectors[sector], polygon)? {
+            self.trace(start, sector, hub, scratch)?;
+            if !visit(&self.sectors[sector], &scratch.polygon)? {
                 return Some(false);
             }
         }
         Some(true)
+    }
+
+    /// Traces the part of the polygon in one sector, from the crossing `start` into it and back there; `None` where it
+    /// does not come back.
+    fn trace(
+        &self,
+        start: usize,
+        sector: usize,
+        hub: Option<Corner>,
+        scratch: &mut CutScratch,
+    ) -> Option<()> {
+        let CutScratch {
+            events,
+            links,
+            visited,
+            polygon,
+            ..
+        } = scratch;
+        polygon.clear();
+        let mut at = start;
+        while !visited[at] {
+            visited[at] = true;
+            let mut leave = at;
+            loop {
+                match events[leave] {
+                    Event::Corner(corner) | Event::Crossing { at: corner, .. } => {
+                        polygon.push(corner);
+                    }
+                }
+                let crossed = matches!(events[leave], Event::Crossing { .. });
+                if crossed && leave != at {
+                    break;
+                }
+                leave = (leave + 1) % events.len();
+                if leave == at {
+                    // A single crossing has nothing to lead back through.
+                    return None;
+                }
+            }
+            at = match links[leave] {
+                Link::Crossing(other) => other,
+                Link::Hub => {
+                    polygon.extend(hub);
+                    let entry = |i: &usize| {
+                        links[*i] == Link::Hub
+                            && matches!(events[*i], Event::Crossing { spoke, forward: true, .. }
+                                if self.behind(spoke, true) == sector)
+                    };
+                    (0..events.len()).find(entry)?
+                }
+                Link::Open => return None,
+            };
+        }
+        (at == start).then_some(())
     }
 
     /// The sector behind a spoke that is crossed.

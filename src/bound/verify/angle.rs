@@ -335,13 +335,7 @@ impl Check<'_> {
         let [point, replacement] =
             [0, 1].map(|k| three[0][k] * w[0] + three[1][k] * w[1] + three[2][k] * w[2]);
         for viewpoint in self.viewpoints_of(k) {
-            let seen = FrameSighting {
-                tangent2: tangent2(point, replacement, viewpoint),
-                triangle: sample.triangle,
-                point,
-                replacement,
-                viewpoint,
-            };
+            let seen = FrameSighting::new(sample.triangle, point, replacement, viewpoint);
             found.see(seen, self.limit2);
         }
     }
@@ -363,13 +357,7 @@ impl Check<'_> {
             if tangent2(point, nearest, viewpoint) > self.limit2 {
                 replacement = facets.nearest_in_angle(viewpoint, point, nearest);
             }
-            let seen = FrameSighting {
-                tangent2: tangent2(point, replacement, viewpoint),
-                triangle: sample.triangle,
-                point,
-                replacement,
-                viewpoint,
-            };
+            let seen = FrameSighting::new(sample.triangle, point, replacement, viewpoint);
             found.see(seen, self.limit2);
         }
         near

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::viewpoints::tangent2;
 
-/// A sighting in frame units.
+/// A pair of points as a viewer sees them, in frame units.
 #[derive(Clone, Copy)]
 pub(super) struct FrameSighting {
     pub(super) tangent2: f64,
@@ -15,17 +15,22 @@ pub(super) struct FrameSighting {
 }
 
 impl FrameSighting {
+    /// Measures a pair of points from a viewpoint.
+    pub(super) fn new(triangle: u32, point: DVec3, replacement: DVec3, viewpoint: DVec3) -> Self {
+        Self {
+            tangent2: tangent2(point, replacement, viewpoint),
+            triangle,
+            point,
+            replacement,
+            viewpoint,
+        }
+    }
+
     /// Looks at another pair of points of the same triangle: the larger angle stays.
     pub(super) fn look(&mut self, point: DVec3, replacement: DVec3, viewpoint: DVec3) {
-        let tangent2 = tangent2(point, replacement, viewpoint);
-        if tangent2 > self.tangent2 {
-            *self = Self {
-                tangent2,
-                point,
-                replacement,
-                viewpoint,
-                ..*self
-            };
+        let other = Self::new(self.triangle, point, replacement, viewpoint);
+        if other.tangent2 > self.tangent2 {
+            *self = other;
         }
     }
 }

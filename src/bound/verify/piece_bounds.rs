@@ -12,7 +12,6 @@ use super::{
     angle_tally::{AngleTally, FrameSighting},
     gaps::{self, Gap},
     record::{ONE, Record},
-    viewpoints::tangent2,
 };
 use crate::{Progress, Result, num::math::length, parallel};
 
@@ -135,13 +134,7 @@ impl Check<'_> {
             Some(&at) => (at, at[0]),
             None => (corners[0], self.viewpoints.corners[0]),
         };
-        FrameSighting {
-            tangent2: tangent2(point, replacement, viewpoint),
-            triangle,
-            point,
-            replacement,
-            viewpoint,
-        }
+        FrameSighting::new(triangle, point, replacement, viewpoint)
     }
 
     fn closer_bounds(

@@ -19,13 +19,13 @@
 //! Positions are in the units of the mesh file. Directions and normals may have any length but 0. Numbers are written
 //! with the digits that give the same double back; a box is written as a polyhedron.
 
-use std::{fs::File, io::Read, path::Path};
+use std::path::Path;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Shape, ViewCell};
-use crate::{Error, Result};
+use crate::{Error, Result, encode::json};
 
 /// The version of the schema that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
@@ -96,10 +96,7 @@ pub fn to_json(cell: &ViewCell) -> Result<String> {
         schema: SCHEMA,
         cell: CellRecord::of(cell),
     };
-    let mut text = serde_json::to_string_pretty(&record)
-        .map_err(|e| Error::Internal(format!("a cell as JSON: {e}")))?;
-    text.push('\n');
-    Ok(text)
+    json::to_text(&record)
 }
 
 /// The cell in the text of a cell file; `path` is named in errors.
@@ -109,16 +106,10 @@ pub fn to_json(cell: &ViewCell) -> Result<String> {
 pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewCell> {
     let path = path.as_ref();
     let refused = |what: String| refused(path, &what);
-    // The version first: a later schema fails with its number, not with a field this version does not know.
-    #[derive(Deserialize)]
-    struct Version {
-        schema: u32,
-    }
-    let version: Version = serde_json::from_str(text).map_err(|e| refused(e.to_string()))?;
-    if version.schema != SCHEMA {
+    let schema = json::schema_of(text).map_err(|e| refused(e.to_string()))?;
+    if schema != SCHEMA {
         return Err(refused(format!(
-            "schema {}; this version reads schema {SCHEMA}",
-            version.schema
+            "schema {schema}; this version reads schema {SCHEMA}"
         )));
     }
     let record: FileRecord = serde_json::from_str(text).map_err(|e| refused(e.to_string()))?;
@@ -131,19 +122,7 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewCell> {
 /// [`Error::Io`], or as [`from_json`].
 pub fn read(path: impl AsRef<Path>) -> Result<ViewCell> {
     let path = path.as_ref();
-    let mut bytes = Vec::new();
-    // By what is read, not by what is claimed: a pipe or device has no size.
-    File::open(path)
-        .and_then(|file| file.take(SIZE_LIMIT + 1).read_to_end(&mut bytes))
-        .map_err(|e| Error::io("read", path, e))?;
-    if bytes.len() as u64 > SIZE_LIMIT {
-        return Err(refused(
-            path,
-            &format!("more than {SIZE_LIMIT} bytes; expected a cell file of at most that"),
-        ));
-    }
-    let text = std::str::from_utf8(&bytes).map_err(|e| refused(path, &e.to_string()))?;
-    from_json(text, path)
+    from_json(&json::read_text(path, SIZE_LIMIT, "cell file")?, path)
 }
 
 /// Says what is wrong with a cell file, and shows one that is right.
