@@ -22,13 +22,13 @@ const TIP: f64 = 0.3;
 
 /// The original surface, and how far the whole mesh was from it.
 #[derive(Debug)]
-pub struct Deviation<'a> {
+pub struct DistancePenalty<'a> {
     original: &'a TriangleTree,
     total: f64,
     weight: f64,
 }
 
-impl<'a> Deviation<'a> {
+impl<'a> DistancePenalty<'a> {
     /// `original` in the frame of `live`; `None` without weight. O(n log n).
     #[must_use]
     pub fn new(original: &'a TriangleTree, live: &LiveMesh, weight: f64) -> Option<Self> {
@@ -209,8 +209,8 @@ mod tests {
     fn only_a_gain_that_outweighs_the_added_distance_pays() {
         let live = LiveMesh::new(&tent(0.125), Frame::default());
         let square = square();
-        assert!(Deviation::new(&square, &live, 0.0).is_none());
-        let deviation = Deviation::new(&square, &live, 0.5).expect("a weight");
+        assert!(DistancePenalty::new(&square, &live, 0.0).is_none());
+        let deviation = DistancePenalty::new(&square, &live, 0.5).expect("a weight");
         // Of every face: a third of the height at the centroid, halves at two midpoints, none at the third.
         let area = 0.5 * 2.0 * length(DVec3::new(0.0, 1.0, 0.125));
         let expected = 4.0 * area * 0.25 * (0.125 / 3.0 + 0.0625 + 0.0625);
@@ -236,7 +236,7 @@ mod tests {
         let square = square();
         for height in [-0.25, 0.0, 0.125] {
             let live = LiveMesh::new(&tent(height), Frame::default());
-            let deviation = Deviation::new(&square, &live, 1.0).expect("a weight");
+            let deviation = DistancePenalty::new(&square, &live, 1.0).expect("a weight");
             let mut star = Star::default();
             star.gather(&live, 0);
             let fit = deviation.fit(&live, &star).expect("faces");

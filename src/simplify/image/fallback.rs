@@ -3,7 +3,7 @@
 //! The image-driven method orders collapses and moves vertices by pictures of some size. Where those cannot resolve
 //! the details that a mesh still has (many triangles left on a smooth surface, differences below one level of luma), it
 //! fits their noise, and the memoryless method, which knows nothing of noise, looks better. So both results are compared
-//! in views that drove neither, [`HeldOut`], and the memoryless one is returned where images did not pay, or hardly:
+//! in views that drove neither, [`HeldOutViews`], and the memoryless one is returned where images did not pay, or hardly:
 //! with the very bits that its own run has. To be sure of a case that is plainly better costs little: the memoryless
 //! method only continues from the mesh that images started from, which is as good as its own result within a few
 //! percent.
@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::{
     super::{Options, Outcome, Report, Target, run::simplify_in_pool},
-    HeldOut, ImageOptions, ImageReport,
+    HeldOutViews, ImageOptions, ImageReport,
 };
 use crate::{Progress, Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
 
@@ -47,7 +47,7 @@ pub struct Comparison {
 #[derive(Debug)]
 pub(super) struct Contest<'a> {
     pub(super) own: &'a ImageOptions,
-    pub(super) held_out: HeldOut,
+    pub(super) held_out: HeldOutViews,
     /// The input, in file units.
     pub(super) mesh: &'a Mesh,
     /// The mesh that images started from, in file units.

@@ -4,7 +4,7 @@
 //! resolve what a mesh still has, ordering and polishing by them fit their noise. These views are between the driving
 //! ones and have four times their pixels (at least [`LEAST`] along a side), with the same shading and 2 x 2 samples.
 
-use super::{ImageOptions, Reference, Size};
+use super::{ImageOptions, ReferenceImages, Size};
 use crate::{
     Progress, Result,
     mesh::{FramedMesh, Mesh},
@@ -26,12 +26,12 @@ const ROUND: u32 = 1_000;
 
 /// Pictures of the original in views that drive nothing.
 #[derive(Debug)]
-pub struct HeldOut {
+pub struct HeldOutViews {
     frame: Frame,
-    reference: Reference,
+    reference: ReferenceImages,
 }
 
-impl HeldOut {
+impl HeldOutViews {
     /// Draws `original`, the scene of `mesh`; both are in units of `frame`. The size of `own` must have been resolved.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl HeldOut {
             ..own.clone()
         };
         let set = own.views(mesh, frame, ROUND)?;
-        let reference = Reference::draw(original, set, progress)?;
+        let reference = ReferenceImages::draw(original, set, progress)?;
         Ok(Self { frame, reference })
     }
 
@@ -97,7 +97,8 @@ mod tests {
                 shading,
                 ..own.clone()
             };
-            let held_out = HeldOut::new(&scene, &mesh, frame, &own, &crate::Silent).expect("views");
+            let held_out =
+                HeldOutViews::new(&scene, &mesh, frame, &own, &crate::Silent).expect("views");
             let same = held_out.error(&original).expect("drawn");
             assert!(same.is_zero(), "nothing differs from itself");
             let error = held_out.error(&coarse).expect("drawn");

@@ -2,7 +2,7 @@
 
 use super::{
     super::memoryless::{self, MemorylessOptions},
-    ImageError, PictureScratch, Pictures,
+    PictureScratch, Pictures,
 };
 use crate::{
     collapse::{
@@ -13,24 +13,24 @@ use crate::{
     raster::ViewSubset,
 };
 
-/// What a glance makes of a cost, so that few edges are looked at too late. Measured on the bunny at five targets: with 1
-/// instead 0.3 % more error and 0.5 % more distance, for 10 % less time in this part of a run.
+/// Factor on a cost from some of the views, so that few edges are evaluated too late. Measured on the bunny at five
+/// targets: with 1 instead 0.3 % more error and 0.5 % more distance, for 10 % less time in this part of a run.
 const EARLY: f64 = 0.7;
 
-/// Fewest views that tell a cost from a glance.
+/// Fewest views that a rough cost is taken from.
 const LEAST_SEEN: usize = 5;
 
-/// The method: pictures of the mesh as it is, and how far they are from those of the original.
+/// The image-driven method: pictures of the mesh as it is, and their distance from those of the original.
 #[derive(Debug)]
 pub struct ImageDriven {
     pictures: Pictures,
     placement: MemorylessOptions,
     /// Largest sum of squared differences that a collapse may lead to.
     limit: Option<f64>,
-    /// What a unit of swept volume adds to the first key.
+    /// Image error per unit of swept volume, added to the first key.
     swept_price: f64,
-    /// Of every so many views one is enough for the first keys of an edge; 1 is all views.
-    glance: u32,
+    /// Every n-th view gives the first keys of an edge; 1 is all views.
+    view_stride: u32,
     /// Views of the set.
     views: usize,
     scratch: PictureScratch,
@@ -44,54 +44,55 @@ pub struct ImageScratch {
 }
 
 impl ImageDriven {
-    /// A run on the mesh that `pictures` show. `rms_limit` ends it before the root mean square of the luma differences over all views exceeds it.
+    /// A run on the mesh that `pictures` show. `rms_limit` ends it before the root mean square of the luma
+    /// differences over all views exceeds it.
     #[must_use]
     pub fn new(pictures: Pictures, placement: MemorylessOptions, rms_limit: Option<f64>) -> Self {
         Self {
-            limit: rms_limit.map(|rms| pictures.error().sum_of_rms(rms)),
+            limit: rms_limit.map(|rms| pictures.sum_of_rms(rms)),
             scratch: pictures.lone_scratch(),
-            views: pictures.error().views(),
+            views: pictures.views(),
             pictures,
             placement,
             swept_price: 0.0,
-            glance: 1,
+            view_stride: 1,
         }
     }
 
     /// Charges `price` units of image error for every unit of volume (frame units cubed) that a collapse sweeps, the root
-    /// of its memoryless cost: what few pictures show would else be given up first, however far from the original that
-    /// leads. 0, the published method, unless asked for.
+    /// of its memoryless cost: parts that few pictures show would else be given up first, however far from the original
+    /// that leads. 0, the published method, unless asked for.
     #[must_use]
     pub fn with_swept_price(mut self, price: f64) -> Self {
         self.swept_price = price;
         self
     }
 
-    /// Of every so many views one is enough for the first keys of an edge, under which it waits to be looked at in all of
-    /// them; 1, the published method, unless asked for. Where a glance would see fewer than five views, it sees all.
+    /// Takes the first keys of an edge, under which it waits to be evaluated in all views, from every n-th view; 1, the
+    /// published method, unless asked for. Where that would be fewer than five views, it is all of them.
     #[must_use]
-    pub fn with_glance(mut self, every: u32) -> Self {
+    pub fn with_view_stride(mut self, every: u32) -> Self {
         let seen = self.views / every.max(1) as usize;
-        self.glance = if seen < LEAST_SEEN { 1 } else { every };
+        self.view_stride = if seen < LEAST_SEEN { 1 } else { every };
         self
     }
 
-    /// Prices the collapse of the site's edge by the views of a glance.
+    /// Prices the collapse of the site's edge by some of the views.
     fn price(
         &self,
         site: &Site<'_>,
-        glance: ViewSubset,
+        views: ViewSubset,
         scratch: &mut ImageScratch,
     ) -> Result<Proposal, Refusal> {
         let proposal = memoryless::propose(site, &self.placement)?;
         let ImageScratch { pictures, patch } = scratch;
         site.patch(proposal.position, patch);
-        let seen = self.pictures.cost(site.live, patch, glance, pictures);
-        let image = match glance {
+        let seen = self.pictures.cost(site.live, patch, views, pictures);
+        let image = match views {
             ViewSubset::EveryNth(every) => {
                 let part = self.views.div_ceil(every.max(1) as usize).max(1);
                 let all = (i128::from(seen) * self.views as i128 / part as i128) as i64;
-                // The front of the queue is looked at anyway: better there too early than too late.
+                // The front of the queue is evaluated in full anyway: better there too early than too late.
                 let early = |cost: i64| (cost as f64 * EARLY) as i64;
                 if all > 0 { early(all) } else { all }
             }
@@ -106,8 +107,8 @@ impl ImageDriven {
 
     /// The pictures and their distance from the original's.
     #[must_use]
-    pub fn error(&self) -> &ImageError {
-        self.pictures.error()
+    pub fn pictures(&self) -> &Pictures {
+        &self.pictures
     }
 
     /// The pictures, which show the mesh as the run left it.
@@ -120,7 +121,7 @@ impl ImageDriven {
 impl Method for ImageDriven {
     fn plan(&self) -> Plan {
         Plan {
-            rough_first: self.glance > 1,
+            rough_first: self.view_stride > 1,
             shared_batch: 2,
             evaluations_per_task: 16,
             ..Plan::default()
@@ -145,11 +146,11 @@ impl Method for ImageDriven {
             },
             patch: Patch::default(),
         });
-        let glance = match how {
+        let views = match how {
             Evaluation::Exact => ViewSubset::All,
-            Evaluation::Rough => ViewSubset::EveryNth(self.glance),
+            Evaluation::Rough => ViewSubset::EveryNth(self.view_stride),
         };
-        self.price(site, glance, scratch)
+        self.price(site, views, scratch)
     }
 
     fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
@@ -160,7 +161,7 @@ impl Method for ImageDriven {
         let cost = self
             .pictures
             .cost(live, patch, ViewSubset::All, &mut self.scratch);
-        if (self.pictures.error().sum() as i64 + cost) as f64 <= limit {
+        if (self.pictures.sum() as i64 + cost) as f64 <= limit {
             Review::Commit
         } else {
             Review::LimitReached

@@ -5,16 +5,14 @@
 //! vertex is placed by the memoryless method (section 4.1), whose own cost is the second key: hidden edges all cost 0,
 //! and it keeps hidden parts in shape. But for the paper's preset, volume that a collapse sweeps is charged for as well:
 //! see [`ImageDriven::with_swept_price`]. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
-//! the preset is the paper's, where also every evaluation is in all views (see [`ImageDriven::with_glance`]); the
+//! the preset is the paper's, where also every evaluation is in all views (see [`ImageDriven::with_view_stride`]); the
 //! pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
 //! and flips, which the paper does not have, comes after the last collapse.
 
-mod cost;
 mod distance_penalty;
 mod fallback;
 mod held_out_views;
 mod method;
-mod moves;
 mod options;
 mod original_model;
 mod pictures;
@@ -25,16 +23,15 @@ mod report;
 mod run;
 mod scene_edit;
 
-pub use cost::ImageError;
-pub use distance_penalty::Deviation;
+pub use distance_penalty::DistancePenalty;
 pub use fallback::Comparison;
-pub use held_out_views::HeldOut;
+pub use held_out_views::HeldOutViews;
 pub use method::{ImageDriven, ImageScratch};
 pub use options::{DrivingShading, EngineName, ImageOptions, Size, Start};
-pub use original_model::Original;
+pub use original_model::OriginalModel;
 pub use pictures::{PictureScratch, Pictures};
 pub use polish::{Limits, Polish, PolishCounters, Turn, polish};
 pub use preset::Preset;
-pub use reference_images::Reference;
+pub use reference_images::ReferenceImages;
 pub use report::ImageReport;
-pub use scene_edit::ImageChange;
+pub use scene_edit::SceneEdit;

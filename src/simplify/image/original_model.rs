@@ -1,6 +1,6 @@
 //! What a run that is driven by pictures asks of the original.
 
-use super::{Deviation, HeldOut, ImageOptions, Reference};
+use super::{DistancePenalty, HeldOutViews, ImageOptions, ReferenceImages};
 use crate::{
     Progress, Result, collapse::LiveMesh, mesh::FramedMesh, metric::Orientation, num::Frame,
     raster::Scene, view::ViewSet,
@@ -9,16 +9,16 @@ use crate::{
 /// The original in the driving views, in views that drive nothing, and as a surface. It depends on no collapse: it is
 /// made beside the part of the run that needs no pictures.
 #[derive(Debug)]
-pub struct Original {
+pub struct OriginalModel {
     mesh: FramedMesh,
     frame: Frame,
     scene: Scene,
-    reference: Reference,
-    held_out: Option<HeldOut>,
+    reference: ReferenceImages,
+    held_out: Option<HeldOutViews>,
     sides: Option<Orientation>,
 }
 
-impl Original {
+impl OriginalModel {
     /// Draws `mesh`, in units of `frame`, in the views of `set`; the size of `own` must have been resolved. In other views
     /// as well where the result is to be `contested`. O(n log n + pixels).
     ///
@@ -33,9 +33,9 @@ impl Original {
         progress: &dyn Progress,
     ) -> Result<Self> {
         let scene = Scene::of(&mesh);
-        let held_out = || HeldOut::new(&scene, &mesh, frame, own, progress);
+        let held_out = || HeldOutViews::new(&scene, &mesh, frame, own, progress);
         Ok(Self {
-            reference: Reference::draw(&scene, set, progress)?,
+            reference: ReferenceImages::draw(&scene, set, progress)?,
             held_out: contested.then(held_out).transpose()?,
             sides: Orientation::new(&mesh),
             mesh,
@@ -46,26 +46,26 @@ impl Original {
 
     /// Its pictures in the driving views.
     #[must_use]
-    pub fn reference(&self) -> &Reference {
+    pub fn reference(&self) -> &ReferenceImages {
         &self.reference
     }
 
     /// Its pictures with cameras turned for a later round.
     ///
     /// # Errors
-    /// As [`Original::draw`].
+    /// As [`OriginalModel::draw`].
     pub fn turned(
         &self,
         own: &ImageOptions,
         round: u32,
         progress: &dyn Progress,
-    ) -> Result<Reference> {
+    ) -> Result<ReferenceImages> {
         let set = own.views(&self.mesh, self.frame, round)?;
-        Reference::draw(&self.scene, set, progress)
+        ReferenceImages::draw(&self.scene, set, progress)
     }
 
     /// Its pictures in views that drive nothing, once: nothing else of the run looks at them.
-    pub fn take_held_out(&mut self) -> Option<HeldOut> {
+    pub fn take_held_out(&mut self) -> Option<HeldOutViews> {
         self.held_out.take()
     }
 
@@ -75,9 +75,9 @@ impl Original {
         self.sides.as_ref()
     }
 
-    /// How far `live` is from its surface, as a share of the image error: see [`Deviation::new`].
+    /// How far `live` is from its surface, as a share of the image error: see [`DistancePenalty::new`].
     #[must_use]
-    pub fn deviation(&self, live: &LiveMesh, weight: f64) -> Option<Deviation<'_>> {
-        Deviation::new(self.sides()?.surface(), live, weight)
+    pub fn deviation(&self, live: &LiveMesh, weight: f64) -> Option<DistancePenalty<'_>> {
+        DistancePenalty::new(self.sides()?.surface(), live, weight)
     }
 }

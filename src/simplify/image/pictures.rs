@@ -1,86 +1,149 @@
-//! The pictures that drive a run, and what a patch of the mesh does to them.
+//! The pictures that drive a run, their error (equation 8 of Lindstrom & Turk 2000, over all views, as an exact
+//! integer), and its change by a patch of the mesh.
 
 use super::{
-    EngineName, ImageError, Reference,
-    scene_edit::{ImageChange, Slots},
+    EngineName, ReferenceImages,
+    scene_edit::{SceneEdit, Slots},
 };
 use crate::{
     collapse::{LiveMesh, Patch},
-    raster::{UnrenderScratch, ViewSubset},
+    num::math::sqrt,
+    raster::{self, BucketEngine, Grid, LayerEngine, Model, Unrender, UnrenderScratch, ViewSubset},
     view::Interpolation,
 };
 
-/// Pictures of a mesh as it is, and how far they are from those of the original.
+/// Pictures of a mesh as it is, and the sum of the squared luma differences from those of the original.
+///
+/// A pixel with `samples` x `samples` samples is the integer sum of them, and the difference is squared per pixel: the
+/// unit of sums and costs is `(1 / samples^2)^2` squared levels, one squared level where there is one sample.
+/// The sum is never taken from a cost that was computed earlier: every commit adds its own difference.
 #[derive(Debug)]
 pub struct Pictures {
-    error: ImageError,
+    engine: Box<dyn Unrender>,
     slots: Slots,
     gouraud: bool,
+    sum: u64,
+    /// Number of views.
+    views: usize,
+    /// Pixels of all views.
+    pixels: u64,
+    /// Samples in a pixel.
+    samples: u32,
 }
 
 /// Buffers of one thread.
 #[derive(Debug)]
 pub struct PictureScratch {
     engine: UnrenderScratch,
-    change: ImageChange,
+    edit: SceneEdit,
 }
 
 impl Pictures {
-    /// Draws `live` in the views of the original's pictures (in the same frame), to be compared with them.
+    /// Draws `live` in the views of the original's pictures (in the same frame), and compares them.
     #[must_use]
-    pub fn new(reference: &Reference, live: &LiveMesh, engine: EngineName) -> Self {
+    pub fn new(reference: &ReferenceImages, live: &LiveMesh, engine: EngineName) -> Self {
         let (slots, scene) = Slots::of(live);
-        let mut views = reference.set().views.iter();
-        Self {
-            error: ImageError::new(reference, &scene, engine),
+        let set = reference.set();
+        let mut views = set.views.iter();
+        let (model, sums) = (Model::new(&scene, set), reference.sums());
+        let engine: Box<dyn Unrender> = match engine {
+            EngineName::Layers => Box::new(LayerEngine::new(model, set, sums)),
+            EngineName::Buckets => Box::new(BucketEngine::new(model, set, sums)),
+        };
+        let mut pictures = Self {
+            engine,
             slots,
             gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
-        }
+            sum: 0,
+            views: set.views.len(),
+            pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
+            samples: set.samples * set.samples,
+        };
+        pictures.sum = pictures.sum_from_scratch(reference);
+        pictures
     }
 
-    /// The pictures and their distance from the original's.
+    /// The sum of squared differences between the engine's pictures and those of the original.
+    fn sum_from_scratch(&self, reference: &ReferenceImages) -> u64 {
+        let view = |(i, y0): (usize, &Grid<u16>)| {
+            let sums = raster::sum_samples(&self.engine.luma(i), reference.set().samples);
+            let pairs = y0.values().iter().zip(sums.values());
+            pairs
+                .map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2))
+                .sum::<u64>()
+        };
+        reference.sums().iter().enumerate().map(view).sum()
+    }
+
+    /// Sum over views and pixels of the squared luma differences, in squared levels over `samples^4`.
     #[must_use]
-    pub fn error(&self) -> &ImageError {
-        &self.error
+    pub fn sum(&self) -> u64 {
+        self.sum
     }
 
-    /// Buffers for a thread.
+    /// Root mean square of the differences over all views, in levels (equation 2).
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        sqrt(self.sum as f64 / self.pixels.max(1) as f64) / f64::from(self.samples)
+    }
+
+    /// The sum that a root mean square in levels stands for.
+    #[must_use]
+    pub fn sum_of_rms(&self, rms: f64) -> f64 {
+        let sum = rms * f64::from(self.samples);
+        sum * sum * self.pixels as f64
+    }
+
+    /// Number of views.
+    #[must_use]
+    pub fn views(&self) -> usize {
+        self.views
+    }
+
+    /// The engine that keeps the pictures.
+    #[must_use]
+    pub fn engine(&self) -> &dyn Unrender {
+        &*self.engine
+    }
+
+    /// Buffers for one thread of several that evaluate at the same time.
     #[must_use]
     pub fn scratch(&self) -> PictureScratch {
         PictureScratch {
-            engine: self.error.engine().scratch(),
-            change: ImageChange::default(),
+            engine: self.engine.scratch(),
+            edit: SceneEdit::default(),
         }
     }
 
-    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`](crate::raster::Unrender::lone_scratch).
+    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
     #[must_use]
     pub fn lone_scratch(&self) -> PictureScratch {
         PictureScratch {
-            engine: self.error.engine().lone_scratch(),
-            change: ImageChange::default(),
+            engine: self.engine.lone_scratch(),
+            edit: SceneEdit::default(),
         }
     }
 
-    /// What the patch, not yet committed, would add to the error in the views of a glance; negative where it makes
-    /// those better.
+    /// Prices a patch, not yet committed: its addition to the error in some views, negative where it makes those better.
     #[must_use]
     pub fn cost(
         &self,
         live: &LiveMesh,
         patch: &Patch,
-        glance: ViewSubset,
+        views: ViewSubset,
         scratch: &mut PictureScratch,
     ) -> i64 {
-        let PictureScratch { engine, change } = scratch;
-        change.fill(&self.slots, live, patch, self.gouraud);
-        self.error.cost(&change.as_change(), glance, engine)
+        let PictureScratch { engine, edit } = scratch;
+        edit.fill(&self.slots, live, patch, self.gouraud);
+        self.engine.evaluate(&edit.as_change(), views, engine)
     }
 
-    /// Follows a patch, before or after `live` has it, and returns what it added to the error.
+    /// Follows a patch, before or after `live` has it, and returns its addition to the error.
     pub fn commit(&mut self, live: &LiveMesh, patch: &Patch, scratch: &mut PictureScratch) -> i64 {
-        let PictureScratch { engine, change } = scratch;
-        change.fill(&self.slots, live, patch, self.gouraud);
-        self.error.commit(&change.as_change(), engine)
+        let PictureScratch { engine, edit } = scratch;
+        edit.fill(&self.slots, live, patch, self.gouraud);
+        let cost = self.engine.commit(&edit.as_change(), engine);
+        self.sum = self.sum.wrapping_add_signed(cost);
+        cost
     }
 }

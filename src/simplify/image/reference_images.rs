@@ -8,12 +8,12 @@ use crate::{
 
 /// Pictures of the original in a set of views.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct ReferenceImages {
     set: ViewSet,
     sums: Vec<Grid<u16>>,
 }
 
-impl Reference {
+impl ReferenceImages {
     /// Draws `original` in the views of `set`, in parallel. O(triangles + pixels) for every view.
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 //! An image-driven run: memoryless down to its start, then by images, then polished and held against geometry.
 
 use super::{
-    HeldOut, ImageDriven, ImageOptions, ImageReport, Limits, Original, PictureScratch, Pictures,
-    PolishCounters, Size, Start, fallback::Contest, polish,
+    HeldOutViews, ImageDriven, ImageOptions, ImageReport, Limits, OriginalModel, PictureScratch,
+    Pictures, PolishCounters, Size, Start, fallback::Contest, polish,
 };
 use crate::{
     Progress, Result,
@@ -60,7 +60,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     let mut method = drive(&run.live);
     let mut resolved = Start::Triangles(start as u64);
     // Where an error limits the run, pre-simplification must not use up more than half of it.
-    let too_far = limit.is_some_and(|rms| method.error().rms() > 0.5 * rms);
+    let too_far = limit.is_some_and(|rms| method.pictures().rms() > 0.5 * rms);
     if too_far && !run.phases.is_empty() {
         run = Run::new(mesh, &run.options, progress)?;
         method = drive(&run.live);
@@ -76,10 +76,10 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
         Some(held_out) => Some(contest(own, held_out, mesh, &run.live)?),
         None => None,
     };
-    let sum = method.error().sum() as f64;
+    let sum = method.pictures().sum() as f64;
     let deviation = original.deviation(&run.live, own.swept_weight);
     let price = deviation.map_or(0.0, |d| d.price(sum));
-    let mut method = method.with_swept_price(price).with_glance(own.glance);
+    let mut method = method.with_swept_price(price).with_view_stride(own.glance);
     let before = run.phase_start();
     let stop = run.phase("image", &mut method, run.least(), before)?;
     let mut pictures = method.into_pictures();
@@ -91,7 +91,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
         (pictures, counters) = polish_by(own, &original, pictures, &mut run)?;
         report.polish = Some(counters);
     }
-    report.error_rms = Some(pictures.error().rms());
+    report.error_rms = Some(pictures.rms());
     drop((pictures, original));
     // (4) The better one of images and geometry.
     let triangles = run.least();
@@ -104,14 +104,14 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
 
 /// Collapses by geometry down to `start` triangles, or to the target where that comes first, while the original is
 /// drawn.
-fn approach(own: &ImageOptions, start: usize, run: &mut Run<'_>) -> Result<Original> {
+fn approach(own: &ImageOptions, start: usize, run: &mut Run<'_>) -> Result<OriginalModel> {
     let progress = run.progress;
     let frame = run.live.frame();
     let framed = run.mesh.enter_frame(frame);
     // Views that cannot be used are told before any work.
     let set = own.views(&framed, frame, 0)?;
     let contested = own.is_contested(run.options.error_rms.is_none());
-    let draw = || Original::draw(framed, frame, set, own, contested, progress);
+    let draw = || OriginalModel::draw(framed, frame, set, own, contested, progress);
     if run.live.triangle_count() <= start {
         progress.step("draw", 0, 0)?;
         return draw();
@@ -128,7 +128,7 @@ fn approach(own: &ImageOptions, start: usize, run: &mut Run<'_>) -> Result<Origi
 
 fn contest<'a>(
     own: &'a ImageOptions,
-    held_out: HeldOut,
+    held_out: HeldOutViews,
     mesh: &'a Mesh,
     live: &LiveMesh,
 ) -> Result<Contest<'a>> {
@@ -142,7 +142,7 @@ fn contest<'a>(
 
 /// Turns faces back that collapses turned over: polishing would only keep them from getting worse. Looks at no
 /// picture, so only where no error of theirs is limited.
-fn turn_back(original: &Original, pictures: &mut Pictures, run: &mut Run<'_>) -> Result<()> {
+fn turn_back(original: &OriginalModel, pictures: &mut Pictures, run: &mut Run<'_>) -> Result<()> {
     let Some(sides) = original.sides().filter(|_| run.options.error_rms.is_none()) else {
         return Ok(());
     };
@@ -163,7 +163,7 @@ fn turn_back(original: &Original, pictures: &mut Pictures, run: &mut Run<'_>) ->
 /// Polishes the mesh, with cameras that turn unless the user was told a limit for these views.
 fn polish_by(
     own: &ImageOptions,
-    original: &Original,
+    original: &OriginalModel,
     pictures: Pictures,
     run: &mut Run<'_>,
 ) -> Result<(Pictures, PolishCounters)> {

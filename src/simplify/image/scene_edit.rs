@@ -88,7 +88,7 @@ struct ShadedFace {
 
 /// Buffers that hold a [`Change`].
 #[derive(Clone, Debug, Default)]
-pub struct ImageChange {
+pub struct SceneEdit {
     removed: Vec<u32>,
     added: Vec<Added>,
     moved: Vec<(u32, DVec3)>,
@@ -97,7 +97,7 @@ pub struct ImageChange {
     faces: Vec<ShadedFace>,
 }
 
-impl ImageChange {
+impl SceneEdit {
     /// The change, for an un-rendering engine.
     #[must_use]
     pub fn as_change(&self) -> Change<'_> {
@@ -218,7 +218,7 @@ mod tests {
             let mut patch = Patch::default();
             site.patch(position, &mut patch);
             let (slots, _) = Slots::of(&live);
-            let mut change = ImageChange::default();
+            let mut change = SceneEdit::default();
             change.fill(&slots, &live, &patch, true);
             let before = change.normals.clone();
             live.apply(&patch, &mut Changes::default());

@@ -11,7 +11,7 @@ use lodmark::{
     num::math,
     simplify::{
         MethodOptions, Options, Target,
-        image::{Deviation, EngineName, Limits, Pictures, Polish, polish},
+        image::{DistancePenalty, EngineName, Limits, Pictures, Polish, polish},
         simplify,
     },
     view::{Sphere, ViewSet, frame_of},
@@ -104,7 +104,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
         for (weight, falling) in [(0.0, false), (1.0, false), (20.0, false), (20.0, true)] {
             let mut live = LiveMesh::new(&worse, frame);
             let pictures = Pictures::new(&reference(&original, set), &live, EngineName::Layers);
-            let bound = Deviation::new(&surface, &live, weight);
+            let bound = DistancePenalty::new(&surface, &live, weight);
             let total = deviation(&all, &worse.enter_frame(frame).in_frame_units().clone());
             let mut judge = Judge {
                 original: &original,
@@ -114,7 +114,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
                 falling,
                 total,
                 last: total,
-                sums: VecDeque::from([pictures.error().sum() as i64]),
+                sums: VecDeque::from([pictures.sum() as i64]),
                 for_the_surface: 0,
             };
             let options = Polish {
@@ -143,10 +143,7 @@ fn a_change_that_makes_pictures_worse_brings_the_surface_nearer_by_as_much() {
                 .enter_frame(frame)
                 .in_frame_units()
                 .clone();
-            assert_eq!(
-                pictures.error().sum() as i64,
-                error(&original, &result, set)
-            );
+            assert_eq!(pictures.sum() as i64, error(&original, &result, set));
             for_the_surface += judge.for_the_surface;
             distances.push(deviation(&all, &result));
         }

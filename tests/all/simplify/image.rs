@@ -12,7 +12,7 @@ use lodmark::{
     raster,
     simplify::{
         self, MethodOptions, Options, Stop, Target,
-        image::{EngineName, ImageDriven, Pictures, Preset, Reference, Size, Start},
+        image::{EngineName, ImageDriven, Pictures, Preset, ReferenceImages, Size, Start},
         memoryless::{self, MemorylessOptions},
     },
     view::{
@@ -68,8 +68,8 @@ fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watche
 }
 
 /// The pictures of `original`, in units of the frame of `set`.
-pub(crate) fn reference(original: &Mesh, set: &ViewSet) -> Reference {
-    Reference::draw(&scene_of(original), set.clone(), &Silent).expect("not interrupted")
+pub(crate) fn reference(original: &Mesh, set: &ViewSet) -> ReferenceImages {
+    ReferenceImages::draw(&scene_of(original), set.clone(), &Silent).expect("not interrupted")
 }
 
 /// Sum of squared luma differences, by drawing everything.
@@ -246,7 +246,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                     .enter_frame(frame)
                     .in_frame_units()
                     .clone();
-                let (scene, pictures) = (scene_of(&now), method.inner.error());
+                let (scene, pictures) = (scene_of(&now), method.inner.pictures());
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
@@ -334,7 +334,7 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 assert_eq!(proposal.primary, cheapest.0, "{mesh_name}, {view_name}");
                 assert_eq!(taken.0, Some(cheapest.3), "{mesh_name}, {view_name}");
                 assert_eq!(
-                    method.inner.error().sum() as i64 - before,
+                    method.inner.pictures().sum() as i64 - before,
                     cost,
                     "{mesh_name}, {view_name}"
                 );

@@ -49,7 +49,7 @@ fn polished(
         &live,
         engine,
     );
-    let before = pictures.error().sum();
+    let before = pictures.sum();
     let (pictures, counters) = polish(
         &mut live,
         pictures,
@@ -123,13 +123,9 @@ fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
                 options,
                 &mut falling,
             );
-            assert!(pictures.error().sum() <= before, "{name}, {views}");
+            assert!(pictures.sum() <= before, "{name}, {views}");
             if falling.changes > 0 {
-                assert_eq!(
-                    pictures.error().sum() as i64,
-                    falling.last,
-                    "{name}, {views}"
-                );
+                assert_eq!(pictures.sum() as i64, falling.last, "{name}, {views}");
             }
             assert_eq!(
                 falling.changes as u64,

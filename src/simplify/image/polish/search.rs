@@ -3,7 +3,10 @@
 
 use glam::DVec3;
 
-use super::{Limits, PictureScratch, Pictures};
+use super::{
+    super::{PictureScratch, Pictures},
+    Limits,
+};
 use crate::{
     collapse::{Freedom, LiveMesh, Patch, Rules, Star, check_folds, check_uv_orientation},
     num::math,
@@ -27,7 +30,16 @@ pub(super) struct Search {
     pub(super) pictures: PictureScratch,
 }
 
-/// What a search found.
+/// Positions that a search tries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe {
+    /// Distance, in mean edge lengths at the vertex.
+    pub(super) step: f64,
+    /// Angle of the tangents about the normal, in radians.
+    pub(super) turn: f64,
+}
+
+/// Result of a search.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Found {
     /// The better position, and what going there would add to the error, if there is one: negative unless the surface is
@@ -71,7 +83,7 @@ impl Search {
         pictures: &Pictures,
         limits: Limits<'_>,
         vertex: u32,
-        [step, turn]: [f64; 2],
+        Probe { step, turn }: Probe,
     ) -> Found {
         let rules = limits.rules;
         let mut found = Found::default();
@@ -116,7 +128,7 @@ impl Search {
         found
     }
 
-    /// The best of the position that is best for the pictures, that which [fits](super::Deviation::fit) the surface, the
+    /// The best of the position that is best for the pictures, that which [fits](super::super::DistancePenalty::fit) the surface, the
     /// middle of the two, and the one's place along the tangents with the other's height. Of the last three at most
     /// [`LOOKS`] are drawn, and only where the parabolas and the surface promise something of them.
     fn weigh(
@@ -128,7 +140,7 @@ impl Search {
         expected: &Parabolas,
         found: &mut Found,
     ) {
-        let sum = pictures.error().sum() as f64;
+        let sum = pictures.sum() as f64;
         let origin = self.star.point;
         let fit = limits.deviation.and_then(|d| d.fit(live, &self.star));
         let fit = fit.map(|step| {
@@ -211,7 +223,7 @@ impl Search {
     }
 }
 
-/// What the pictures are expected to cost around a vertex: a parabola along every axis.
+/// Expected image cost around a vertex: a parabola along every axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Parabolas([Parabola; 3]);
 

@@ -1,105 +1,18 @@
-//! Polishing: after the last collapse the vertices that are left move, and edges flip, wherever that makes the pictures
-//! better.
-//!
-//! Not in the papers. Sweeps visit the vertices by ascending id; a vertex tries positions along its normal and two
-//! tangents at a distance that halves whenever none of them is better. Every few sweeps all edges are tried for a flip,
-//! and the cameras are turned as a whole and the original drawn again, so that the mesh fits the model and not the
-//! noise of one set of pictures. Every change that is kept lowers the error of the pictures of that moment, exactly, or
-//! where the surface counts too, brings a vertex so much nearer to the original that it is worth an error.
-//!
-//! Vertices are searched in batches of neighbours' strangers, each against the same pictures; then the batch is
-//! committed one by one, and what an earlier one has made worse is taken back. Batches do not depend on the number of
-//! threads, so neither does the result.
+//! Sweeps over vertices and edges, in independent sets that are searched in parallel.
 
 use std::{collections::VecDeque, sync::Mutex};
 
-use serde::{Deserialize, Serialize};
-
 use super::{
-    Deviation, Pictures,
-    moves::{Found, Search},
+    super::Pictures,
+    Limits, PolishCounters,
+    search::{Found, Probe, Search},
 };
 use crate::{
     Progress, Result,
-    collapse::{Changes, LiveMesh, Observer, Patch, PatchFace, Rules, check_folds, flip},
-    metric::Orientation,
+    collapse::{Changes, LiveMesh, Observer, Patch, check_folds, flip},
     parallel,
     raster::ViewSubset,
 };
-
-/// How much polishing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct Polish {
-    /// Sweeps over all vertices; 0 is no polishing.
-    pub sweeps: u32,
-    /// Edges are tried for flips after every so many sweeps; 0 is never.
-    pub flips_every: u32,
-    /// Cameras are turned after every so many sweeps; 0 is never.
-    pub cameras_every: u32,
-    /// How much the share of the distance from the original weighs against the share of the image error in a change;
-    /// 0 is nothing. See [`Deviation`].
-    pub deviation_weight: f64,
-}
-
-/// What polishing may not do.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Limits<'a> {
-    /// As for collapses.
-    pub rules: Rules,
-    /// How near the original a change should stay, and what being nearer is worth.
-    pub deviation: Option<&'a Deviation<'a>>,
-    /// The error of the pictures may not rise for the surface either: it is limited.
-    pub falling: bool,
-    /// The sides of the original, which no face may turn its back on.
-    pub sides: Option<&'a Orientation>,
-}
-
-impl Limits<'_> {
-    /// What a change that adds `cost` to the error `sum` is worth where the surface counts too: negative where it is for
-    /// the better. The deviation of what the patch removes is kept in `before` for other changes of the same faces.
-    pub(super) fn balance(
-        &self,
-        live: &LiveMesh,
-        patch: &Patch,
-        (cost, sum): (i64, f64),
-        before: &mut Option<f64>,
-    ) -> f64 {
-        let Some(deviation) = self.deviation else {
-            return cost as f64;
-        };
-        let before = *before.get_or_insert_with(|| deviation.before(live, patch));
-        deviation.balance(cost, sum, deviation.after(live, patch) - before)
-    }
-
-    /// Whether a change turns no face over that was not turned over before.
-    pub(super) fn keeps_sides(&self, live: &LiveMesh, patch: &Patch) -> bool {
-        self.sides.is_none_or(|sides| {
-            let faces = patch.added.iter();
-            let flipped = faces
-                .filter(|f| sides.is_flipped(patch.after(live, f)))
-                .count();
-            // What was flipped before is no fault of the change.
-            let before = |f: &&PatchFace| sides.is_flipped(patch.before(live, f));
-            flipped == 0 || flipped <= patch.removed.iter().filter(before).count()
-        })
-    }
-}
-
-/// What the polishing did. The same for every number of threads.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct PolishCounters {
-    /// Positions and flips whose pictures were drawn.
-    pub evaluations: u64,
-    /// Vertices moved.
-    pub moves: u64,
-    /// Edges flipped.
-    pub flips: u64,
-    /// Changes taken back because one just before had made them worse.
-    pub reverted: u64,
-    /// For every set of cameras, the root mean square of the luma differences when they came and when they went.
-    pub cameras: Vec<[f64; 2]>,
-}
 
 /// First distance of the search, as a share of the mean edge length at the vertex.
 const FIRST_STEP: f64 = 0.15;
@@ -113,7 +26,7 @@ const BATCH: usize = 16;
 /// Golden angle, by which the tangents turn from sweep to sweep.
 const TURN: f64 = 2.399_963_229_728_653;
 
-/// How the search stands at a vertex.
+/// State of the search at a vertex.
 #[derive(Clone, Copy, Debug)]
 struct Stand {
     step: f64,
@@ -125,73 +38,10 @@ struct Stand {
     changed: u32,
 }
 
-/// Makes pictures of a mesh with cameras turned for a round (1, 2, ...); none where the cameras are to stay.
-pub type Turn<'a> = dyn FnMut(&LiveMesh, u32) -> Result<Option<Pictures>> + 'a;
-
-/// Polishes `live`, which `pictures` show, with cameras that `fresh` turns.
-///
-/// # Errors
-/// [`crate::Error::Interrupted`], and what `fresh` fails with; the mesh is then somewhere in between.
-pub fn polish(
-    live: &mut LiveMesh,
-    pictures: Pictures,
-    options: Polish,
-    limits: Limits<'_>,
-    fresh: &mut Turn<'_>,
-    observer: &mut dyn Observer,
-    progress: &dyn Progress,
-) -> Result<(Pictures, PolishCounters)> {
-    let stand = Stand {
-        step: FIRST_STEP,
-        settled: false,
-        batch: 0,
-        changed: 1,
-    };
-    let mut polisher = Polisher {
-        stands: vec![stand; live.vertex_ids() as usize],
-        tried: Vec::new(),
-        own: Search::new(&pictures),
-        pool: Mutex::new(Vec::new()),
-        live,
-        pictures,
-        limits,
-        progress,
-        changes: Changes::default(),
-        clock: 1,
-        batch: 0,
-        counters: PolishCounters::default(),
-    };
-    let mut rms = polisher.pictures.error().rms();
-    let every = |n: u32, sweep: u32| n > 0 && sweep.is_multiple_of(n);
-    for sweep in 0..options.sweeps {
-        if sweep > 0
-            && every(options.cameras_every, sweep)
-            && let Some(pictures) = fresh(polisher.live, sweep / options.cameras_every)?
-        {
-            let now = polisher.pictures.error().rms();
-            polisher.counters.cameras.push([rms, now]);
-            polisher.look_through(pictures);
-            rms = polisher.pictures.error().rms();
-        }
-        polisher.moves(sweep, options.sweeps, observer)?;
-        if every(options.flips_every, sweep + 1) {
-            polisher.flips(observer)?;
-        }
-    }
-    let Polisher {
-        pictures,
-        mut counters,
-        ..
-    } = polisher;
-    if options.sweeps > 0 {
-        counters.cameras.push([rms, pictures.error().rms()]);
-    }
-    Ok((pictures, counters))
-}
-
-struct Polisher<'a> {
-    live: &'a mut LiveMesh,
-    pictures: Pictures,
+/// A mesh that is polished, with its pictures.
+pub(super) struct Polisher<'a> {
+    pub(super) live: &'a mut LiveMesh,
+    pub(super) pictures: Pictures,
     limits: Limits<'a>,
     progress: &'a dyn Progress,
     /// By vertex id.
@@ -204,12 +54,40 @@ struct Polisher<'a> {
     changes: Changes,
     clock: u32,
     batch: u32,
-    counters: PolishCounters,
+    pub(super) counters: PolishCounters,
 }
 
-impl Polisher<'_> {
-    /// Other pictures of the same mesh.
-    fn look_through(&mut self, pictures: Pictures) {
+impl<'a> Polisher<'a> {
+    pub(super) fn new(
+        live: &'a mut LiveMesh,
+        pictures: Pictures,
+        limits: Limits<'a>,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let stand = Stand {
+            step: FIRST_STEP,
+            settled: false,
+            batch: 0,
+            changed: 1,
+        };
+        Self {
+            stands: vec![stand; live.vertex_ids() as usize],
+            tried: Vec::new(),
+            own: Search::new(&pictures),
+            pool: Mutex::new(Vec::new()),
+            live,
+            pictures,
+            limits,
+            progress,
+            changes: Changes::default(),
+            clock: 1,
+            batch: 0,
+            counters: PolishCounters::default(),
+        }
+    }
+
+    /// Goes on with other pictures of the same mesh.
+    pub(super) fn look_through(&mut self, pictures: Pictures) {
         self.pictures = pictures;
         self.own = Search::new(&self.pictures);
         self.pool = Mutex::new(Vec::new());
@@ -221,7 +99,12 @@ impl Polisher<'_> {
     }
 
     /// One sweep over the vertices.
-    fn moves(&mut self, sweep: u32, sweeps: u32, observer: &mut dyn Observer) -> Result<()> {
+    pub(super) fn moves(
+        &mut self,
+        sweep: u32,
+        sweeps: u32,
+        observer: &mut dyn Observer,
+    ) -> Result<()> {
         let mut waiting: VecDeque<u32> = (0..self.live.vertex_ids())
             .filter(|&v| self.live.valence(v) > 0 && !self.stands[v as usize].settled)
             .collect();
@@ -232,7 +115,7 @@ impl Polisher<'_> {
             let done = u64::from(sweep) * total as u64 + (total - waiting.len()) as u64;
             self.progress
                 .step("polish", done, u64::from(sweeps) * total as u64)?;
-            self.take_strangers(&mut waiting, &mut batch, Self::around_vertex);
+            self.take_independent(&mut waiting, &mut batch, Self::around_vertex);
             let found = self.in_parallel(&batch, |polisher, search, &v| {
                 let step = polisher.stands[v as usize].step;
                 search.run(
@@ -240,7 +123,7 @@ impl Polisher<'_> {
                     &polisher.pictures,
                     polisher.limits,
                     v,
-                    [step, turn],
+                    Probe { step, turn },
                 )
             });
             let mut committed = false;
@@ -329,7 +212,7 @@ impl Polisher<'_> {
     }
 
     /// Tries to flip every edge whose surroundings changed since it was last tried.
-    fn flips(&mut self, observer: &mut dyn Observer) -> Result<()> {
+    pub(super) fn flips(&mut self, observer: &mut dyn Observer) -> Result<()> {
         self.tried.resize(self.live.edge_ids() as usize, 0);
         let mut waiting: VecDeque<u32> = (0..self.live.edge_ids())
             .filter(|&e| self.live.faces_at_edge(e) == 2 && self.may_flip(e))
@@ -337,13 +220,13 @@ impl Polisher<'_> {
         let mut batch = Vec::with_capacity(BATCH);
         while !waiting.is_empty() {
             self.progress.step("flip", 0, 0)?;
-            self.take_strangers(&mut waiting, &mut batch, Self::around_edge);
+            self.take_independent(&mut waiting, &mut batch, Self::around_edge);
             let now = self.clock;
             let outcomes = self.in_parallel(&batch, |polisher, search, &e| {
                 let patch = polisher.flip(e, &mut search.patch)?;
                 let (live, pictures) = (&*polisher.live, &polisher.pictures);
                 let cost = pictures.cost(live, patch, ViewSubset::All, &mut search.pictures);
-                let sum = pictures.error().sum() as f64;
+                let sum = pictures.sum() as f64;
                 let limits = polisher.limits;
                 let pays = cost < 0
                     && limits.balance(live, patch, (cost, sum), &mut None) <= 0.0
@@ -385,7 +268,7 @@ impl Polisher<'_> {
         ends.iter().any(changed)
     }
 
-    /// The vertices that a search at a vertex looks at: it and its neighbours.
+    /// The vertices that a search at a vertex depends on: it and its neighbours.
     fn around_vertex(&self, vertex: u32, into: &mut Vec<u32>) {
         let faces = self.live.triangles_at(vertex);
         into.extend(faces.filter_map(|f| self.live.triangle(f)).flatten());
@@ -401,9 +284,8 @@ impl Polisher<'_> {
         into.extend(corners.filter(|c| c.contains(&b)).flatten());
     }
 
-    /// Takes the next items in their order, leaving out those that share one of the vertices `around` them with an
-    /// item taken already.
-    fn take_strangers(
+    /// Takes an independent set of the next items in their order: no two share one of the vertices `around` them.
+    fn take_independent(
         &mut self,
         waiting: &mut VecDeque<u32>,
         batch: &mut Vec<u32>,
