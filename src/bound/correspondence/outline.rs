@@ -16,7 +16,7 @@ const ROUNDED: i64 = 256;
 
 /// A corner of a piece in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
+pub(super) struct OutlineCorner {
     pub(super) source: Weights31,
     pub(super) plane: DVec2,
     /// On the rim of the layout, where the triangle across the side goes on and has this corner as well.
@@ -26,15 +26,15 @@ pub(super) struct Corner {
 /// Buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OutlineScratch {
-    sides: Vec<[Corner; 2]>,
-    path: Vec<Corner>,
+    sides: Vec<[OutlineCorner; 2]>,
+    path: Vec<OutlineCorner>,
 }
 
 /// The outlines of pieces one after the other, with their ends; `None` for a tangle.
 pub(super) fn outlines<'a>(
-    pieces: impl Iterator<Item = &'a [Corner]>,
+    pieces: impl Iterator<Item = &'a [OutlineCorner]>,
     scratch: &mut OutlineScratch,
-    corners: &mut Vec<Corner>,
+    corners: &mut Vec<OutlineCorner>,
     ends: &mut Vec<usize>,
 ) -> Option<()> {
     let OutlineScratch { sides, path } = scratch;
@@ -85,7 +85,7 @@ pub(super) fn outlines<'a>(
 
 /// Leaves out corners of the outline from `start` on that its sides do not need: inside a side of the triangle, where no
 /// other piece has one, and not on the rim. An outline of which nothing is left covers nothing.
-fn simplify(corners: &mut Vec<Corner>, start: usize) {
+fn simplify(corners: &mut Vec<OutlineCorner>, start: usize) {
     let mut i = start;
     while corners.len() > start + 2 && i < corners.len() {
         let n = corners.len() - start;
@@ -104,7 +104,7 @@ fn simplify(corners: &mut Vec<Corner>, start: usize) {
 }
 
 /// Leaves out what adds nothing to a part: repeated corners, ways there and back, and parts along a side of the triangle.
-pub(super) fn tidy(part: &[Corner], into: &mut Vec<Corner>) {
+pub(super) fn tidy(part: &[OutlineCorner], into: &mut Vec<OutlineCorner>) {
     into.clear();
     for &corner in part {
         if into.last().is_some_and(|c| c.source == corner.source) {
@@ -128,7 +128,7 @@ pub(super) fn tidy(part: &[Corner], into: &mut Vec<Corner>) {
             break;
         }
     }
-    let along = |c: &[Corner]| {
+    let along = |c: &[OutlineCorner]| {
         Side::of(c[0].source, c[1].source).is_some_and(|side| c.iter().all(|c| side.has(c.source)))
     };
     if into.len() < 3 || along(into) {
@@ -138,7 +138,7 @@ pub(super) fn tidy(part: &[Corner], into: &mut Vec<Corner>) {
 
 /// Turns a part so that all triangles from its first corner lie the right way up in the original triangle; false where no
 /// corner sees all others, up to rounding.
-pub(super) fn turn_to_fan(part: &mut [Corner]) -> bool {
+pub(super) fn turn_to_fan(part: &mut [OutlineCorner]) -> bool {
     let n = part.len();
     let place = &|i: usize| part[i % n].source.bits().map(i64::from);
     // Twice the least area of a triangle from a corner, with what rounding may have taken from it given back.

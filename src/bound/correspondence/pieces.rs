@@ -20,7 +20,7 @@ use glam::DVec3;
 
 use super::{
     layout::{Before, Layout, Part},
-    outline::{self, OutlineScratch, outlines, tidy, turn_to_fan},
+    outline::{OutlineCorner, OutlineScratch, outlines, tidy, turn_to_fan},
     piece::{Allowance, Answer, Corner, FacePieces, Piece, is_whole, itself},
     sectors::CutScratch,
 };
@@ -36,8 +36,8 @@ const CORNERS_AT_LEAST: usize = 1 << 16;
 pub struct PieceScratch {
     /// Pieces of triangles that are in several: triangle, face before, and corners in `cut`.
     split: Vec<(u32, u32, [u32; 2])>,
-    cut: Vec<outline::Corner>,
-    outline: Vec<outline::Corner>,
+    cut: Vec<OutlineCorner>,
+    outline: Vec<OutlineCorner>,
     ends: Vec<usize>,
     outlining: OutlineScratch,
     cutting: CutScratch,
@@ -47,7 +47,7 @@ pub struct PieceScratch {
 /// A part of a piece where it would be.
 #[derive(Clone, Debug, Default)]
 struct Placed {
-    part: Vec<outline::Corner>,
+    part: Vec<OutlineCorner>,
     corners: Vec<Corner>,
     from: Vec<DVec3>,
     to: Vec<DVec3>,
@@ -58,7 +58,7 @@ impl Placed {
     fn place(
         &mut self,
         original: [DVec3; 3],
-        polygon: &[outline::Corner],
+        polygon: &[OutlineCorner],
         part: &Part,
     ) -> Option<bool> {
         tidy(polygon, &mut self.part);
@@ -261,7 +261,7 @@ impl Correspondence {
                 let start = cut.len();
                 cut.extend(in_plane(before, piece));
                 let triangle = piece.triangle;
-                let mut place = |part: &Part, polygon: &[outline::Corner]| {
+                let mut place = |part: &Part, polygon: &[OutlineCorner]| {
                     let covers = placed.place(self.original(triangle), polygon, part)?;
                     Some(!covers || visit(triangle, part, placed))
                 };
@@ -289,7 +289,7 @@ impl Correspondence {
             outlines(pieces, outlining, outline, ends)?;
             let mut start = 0;
             for &end in ends.iter() {
-                let place = |part: &Part, polygon: &[outline::Corner]| {
+                let place = |part: &Part, polygon: &[OutlineCorner]| {
                     let covers = placed.place(self.original(triangle), polygon, part)?;
                     Some(!covers || visit(triangle, part, placed))
                 };
@@ -342,13 +342,13 @@ impl Correspondence {
 const OFF: u32 = 8;
 
 /// The corners of a piece of a face in the plane.
-fn in_plane(before: &Before, piece: Piece<'_>) -> impl Iterator<Item = outline::Corner> {
+fn in_plane(before: &Before, piece: Piece<'_>) -> impl Iterator<Item = OutlineCorner> {
     let [a, b, c] = before.plane;
     piece.corners.iter().map(move |corner| {
         let [u, v] = corner.target.get();
         let [x, y] = corner.target.bits();
         let weights = [Weights31::ONE - x - y, x, y];
-        outline::Corner {
+        OutlineCorner {
             source: corner.source,
             plane: a + (b - a) * u + (c - a) * v,
             fixed: (0..3).any(|k| before.fixed[k] && weights[k] <= OFF),

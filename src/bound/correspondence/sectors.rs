@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::{layout::Part, outline::Corner, sides::Side};
+use super::{layout::Part, outline::OutlineCorner, sides::Side};
 use crate::num::{fixed::Weights31, math::sqrt};
 
 /// Corners no farther than this from a spoke lie on it: a few roundings of weights, in a plane where faces have a size
@@ -29,12 +29,12 @@ pub(super) struct Sectors {
 /// An event of a walk around a polygon.
 #[derive(Clone, Copy, Debug)]
 enum Event {
-    Corner(Corner),
+    Corner(OutlineCorner),
     /// Into the next sector, or back, at a point.
     Crossing {
         spoke: usize,
         forward: bool,
-        at: Corner,
+        at: OutlineCorner,
     },
 }
 
@@ -55,7 +55,7 @@ pub(super) struct CutScratch {
     crossings: Vec<(usize, f64, usize)>,
     links: Vec<Link>,
     visited: Vec<bool>,
-    polygon: Vec<Corner>,
+    polygon: Vec<OutlineCorner>,
 }
 
 impl Sectors {
@@ -116,9 +116,9 @@ impl Sectors {
     /// `None` where that says so, and where the polygon crosses itself or goes around the hub in any other way than once.
     pub(super) fn cut(
         &self,
-        outline: &[Corner],
+        outline: &[OutlineCorner],
         scratch: &mut CutScratch,
-        mut visit: impl FnMut(&Part, &[Corner]) -> Option<bool>,
+        mut visit: impl FnMut(&Part, &[OutlineCorner]) -> Option<bool>,
     ) -> Option<bool> {
         scratch.sectors.clear();
         let sectors = outline.iter().map(|c| self.sector_of(c.plane));
@@ -137,7 +137,7 @@ impl Sectors {
             &mut scratch.crossings,
             &mut scratch.links,
         )?;
-        let hub = around.then(|| Corner {
+        let hub = around.then(|| OutlineCorner {
             source: hub_source(outline, self.hub),
             plane: self.hub,
             fixed: false,
@@ -166,7 +166,7 @@ impl Sectors {
         &self,
         start: usize,
         sector: usize,
-        hub: Option<Corner>,
+        hub: Option<OutlineCorner>,
         scratch: &mut CutScratch,
     ) -> Option<()> {
         let CutScratch {
@@ -227,7 +227,7 @@ impl Sectors {
     /// Writes down corners and crossings; true where they go around the hub once.
     fn walk(
         &self,
-        outline: &[Corner],
+        outline: &[OutlineCorner],
         sectors: &mut [usize],
         events: &mut Vec<Event>,
     ) -> Option<bool> {
@@ -304,10 +304,10 @@ impl Sectors {
     }
 
     /// The point at which a side crosses a spoke.
-    fn crossing(&self, p: Corner, q: Corner, spoke: usize) -> Corner {
+    fn crossing(&self, p: OutlineCorner, q: OutlineCorner, spoke: usize) -> OutlineCorner {
         let along = self.spokes[spoke];
         let [dp, dq] = [p, q].map(|c| along.perp_dot(c.plane - self.hub));
-        let on = |d: f64, c: Corner| d.abs() <= SNAP && along.dot(c.plane - self.hub) > 0.0;
+        let on = |d: f64, c: OutlineCorner| d.abs() <= SNAP && along.dot(c.plane - self.hub) > 0.0;
         if on(dq, q) {
             return q;
         }
@@ -323,7 +323,7 @@ impl Sectors {
         } else {
             0.5
         };
-        Corner {
+        OutlineCorner {
             source: side.between(p.source, q.source, t),
             plane: p.plane.lerp(q.plane, t),
             fixed: false,
@@ -375,7 +375,7 @@ impl Sectors {
 
 /// Where a polygon's inside is mapped to, at a point: mean value coordinates (Floater 2003), which are right for affine
 /// maps and continuous for all others.
-fn hub_source(outline: &[Corner], hub: DVec2) -> Weights31 {
+fn hub_source(outline: &[OutlineCorner], hub: DVec2) -> Weights31 {
     let n = outline.len();
     let half_tangent = |i: usize| {
         let (p, q) = (outline[i].plane - hub, outline[(i + 1) % n].plane - hub);

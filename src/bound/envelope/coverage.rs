@@ -2,7 +2,7 @@
 //!
 //! Every triangle of the original has witnesses: live faces such that each of its points is within reach of one of them.
 //! A change of the mesh takes faces away; only the triangles that have one of those as a witness must be looked at again,
-//! against the faces that come and the witnesses that stay. As for [`Surface`](super::Surface): a piece whose three
+//! against the faces that come and the witnesses that stay. As in [`OriginalSurface`](super::OriginalSurface), a piece whose three
 //! corners are within reach of the same face is near as a whole, others are halved until they are small.
 //!
 //! For every corner the faces within reach are bits of a mask, so that a triangle is settled by `and`. Limits: 128 faces
@@ -49,7 +49,7 @@ pub struct Trial {
 
 /// The new witnesses after a change that passed its test.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct WitnessChange {
     removed: Vec<u32>,
     /// Triangles with the end of their new witnesses in the list.
     triangles: Vec<(u32, usize)>,
@@ -211,7 +211,7 @@ impl Trial {
         ids: &[u32],
         fan: impl Iterator<Item = [DVec3; 3]>,
         reach: Reach,
-        change: &mut Change,
+        change: &mut WitnessChange,
     ) -> bool {
         change.removed.clear();
         change.removed.extend_from_slice(removed);
@@ -347,7 +347,7 @@ fn nearest(facets: &[Facet], among: u128, [a, b, c]: [DVec3; 3]) -> usize {
 
 impl Coverage {
     /// Makes a change that passed its test: the witnesses are those of the faces as they will be.
-    pub fn apply(&mut self, change: &Change) {
+    pub fn apply(&mut self, change: &WitnessChange) {
         for &face in &change.removed {
             self.stands_for[face as usize].clear();
         }

@@ -24,15 +24,15 @@ struct Piece {
 
 /// Buffers of a test.
 #[derive(Clone, Debug, Default)]
-pub struct Pieces(Vec<Piece>);
+pub struct PieceQueue(Vec<Piece>);
 
 /// The original surface.
 #[derive(Clone, Debug, Default)]
-pub struct Surface {
+pub struct OriginalSurface {
     tree: Option<TriangleTree<Facet>>,
 }
 
-impl Surface {
+impl OriginalSurface {
     /// The surface of triangles; O(n log n).
     #[must_use]
     pub fn new(triangles: impl Iterator<Item = [DVec3; 3]>) -> Self {
@@ -54,7 +54,7 @@ impl Surface {
         &self,
         triangles: impl Iterator<Item = [DVec3; 3]>,
         reach: Reach,
-        pieces: &mut Pieces,
+        pieces: &mut PieceQueue,
     ) -> bool {
         let queue = &mut pieces.0;
         queue.clear();

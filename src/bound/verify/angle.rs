@@ -130,7 +130,7 @@ pub fn angles(
         ));
     }
     let (frame, shift) = frame_near(low, high);
-    let check = Check {
+    let check = AngleCheck {
         originals: corners_of(original, frame, shift),
         targets: corners_of(simplified, frame, shift),
         viewpoints: Viewpoints::new(
@@ -186,7 +186,7 @@ fn tangent_limit(degrees: f64) -> f64 {
 }
 
 /// A claim and the surfaces and viewpoints that it is about, in frame units.
-pub(super) struct Check<'a> {
+pub(super) struct AngleCheck<'a> {
     pub(super) originals: Vec<[DVec3; 3]>,
     pub(super) targets: Vec<[DVec3; 3]>,
     pub(super) viewpoints: Viewpoints,
@@ -195,7 +195,7 @@ pub(super) struct Check<'a> {
     record: Option<&'a Record>,
 }
 
-impl Check<'_> {
+impl AngleCheck<'_> {
     /// Refuses coordinates of which the squares of squares are no numbers.
     fn require_numbers(&self) -> Result<()> {
         let mut all = self

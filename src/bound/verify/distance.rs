@@ -126,7 +126,7 @@ pub fn distance(
         Claim::Relative(share) => share * diagonal,
         Claim::Absolute(length) => frame.enter_length(length),
     };
-    let surfaces = [reference, simplified].map(|mesh| Surface::new(mesh, frame));
+    let surfaces = [reference, simplified].map(|mesh| FramedSurface::new(mesh, frame));
     if !surfaces.iter().all(|s| s.is_within(1e60)) {
         return Err(Error::input(
             "-",
@@ -136,7 +136,7 @@ pub fn distance(
     let most = claim * (1.0 + SLACK[0]) + SLACK[1] * diagonal.max(f64::MIN_POSITIVE);
     let check = |from: usize| {
         let name = ["reference", "simplified"][from];
-        let plan = Check {
+        let plan = DistanceCheck {
             from: &surfaces[from],
             to: &surfaces[1 - from],
             most,
@@ -164,12 +164,12 @@ fn empty(which: &str) -> Error {
 }
 
 /// A mesh in frame units.
-struct Surface {
+struct FramedSurface {
     corners: Vec<[DVec3; 3]>,
     facets: Facets,
 }
 
-impl Surface {
+impl FramedSurface {
     fn new(mesh: &Mesh, frame: Frame) -> Self {
         let place = |v: &u32| frame.enter(mesh.positions()[*v as usize]);
         let corners: Vec<_> = mesh
@@ -211,14 +211,14 @@ impl Worst {
     }
 }
 
-struct Check<'a> {
-    from: &'a Surface,
-    to: &'a Surface,
+struct DistanceCheck<'a> {
+    from: &'a FramedSurface,
+    to: &'a FramedSurface,
     /// The claim with its slack.
     most: f64,
 }
 
-impl Check<'_> {
+impl DistanceCheck<'_> {
     fn run(
         &self,
         name: &'static str,

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    angle::Check,
+    angle::AngleCheck,
     angle_bound::{Wanted, first, refine},
     angle_tally::{AngleTally, FrameSighting},
     gaps::{self, Gap},
@@ -42,7 +42,7 @@ struct Bounded {
     beyond2: f64,
 }
 
-impl Check<'_> {
+impl AngleCheck<'_> {
     /// Bounds every piece, the largest angles closely; what is measured on the way goes into `found`.
     pub(super) fn piece_bounds(
         &self,

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     Error, Result,
     bound::{
-        envelope::{Change, Coverage, Pieces, Reach, Surface, Trial},
+        envelope::{Coverage, OriginalSurface, PieceQueue, Reach, Trial, WitnessChange},
         tolerance::{Neighborhood, OldFace, Quadratic, Volume},
     },
     collapse::{
@@ -60,7 +60,7 @@ const UNCOVERED: Refusal = Refusal::Method(&Reason {
 pub struct ToleranceMethod {
     options: ToleranceOptions,
     memoryless: Memoryless,
-    surface: Surface,
+    surface: OriginalSurface,
     /// What the original's triangles are near to; `None` where only the other direction counts.
     coverage: Option<Coverage>,
     diagonal: f64,
@@ -68,7 +68,7 @@ pub struct ToleranceMethod {
     /// The bound of a single collapse against the faces before it; infinite for none.
     local: f64,
     guarantee: Guarantee,
-    change: Change,
+    change: WitnessChange,
     own: Scratch,
 }
 
@@ -76,7 +76,7 @@ pub struct ToleranceMethod {
 #[derive(Clone, Debug, Default)]
 struct Scratch {
     trial: Trial,
-    pieces: Pieces,
+    pieces: PieceQueue,
     removed: Vec<u32>,
     added: Vec<u32>,
 }
@@ -112,7 +112,7 @@ impl ToleranceMethod {
         Ok(Self {
             memoryless: Memoryless::new(live, options.placement),
             coverage: (!options.one_sided).then(|| Coverage::new(live.positions(), &triangles)),
-            surface: Surface::new(corners),
+            surface: OriginalSurface::new(corners),
             diagonal,
             reach,
             local: f64::INFINITY,
@@ -121,7 +121,7 @@ impl ToleranceMethod {
                 of_diagonal: (diagonal > 0.0).then_some(bound / diagonal),
                 two_sided: !options.one_sided,
             },
-            change: Change::default(),
+            change: WitnessChange::default(),
             own: Scratch::default(),
             options,
         })

@@ -1,7 +1,9 @@
 //! The certificate against brute force: a yes is never wrong, a no only near the bound.
 
 use glam::DVec3;
-use lodmark::bound::envelope::{Change, Coverage, Facet, Pieces, Reach, Surface, Trial};
+use lodmark::bound::envelope::{
+    Coverage, Facet, OriginalSurface, PieceQueue, Reach, Trial, WitnessChange,
+};
 
 use crate::{
     bound::tolerance_volume::cases,
@@ -51,7 +53,7 @@ fn a_triangle_that_is_held_is_within_reach_and_one_well_within_reach_is_held() {
         let original: Vec<[DVec3; 3]> = (0..mesh.triangles().len())
             .map(|t| mesh.corners(t))
             .collect();
-        let surface = Surface::new(original.iter().copied());
+        let surface = OriginalSurface::new(original.iter().copied());
         let new = [0; 3].map(|_| {
             DVec3::new(
                 3.0 * random.unit(),
@@ -62,7 +64,7 @@ fn a_triangle_that_is_held_is_within_reach_and_one_well_within_reach_is_held() {
         let most = farthest(new, &original);
         let share = 0.5 + random.unit();
         let reach = Reach::new(most * share, 3.0).expect("large enough");
-        let yes = surface.holds([new].into_iter(), reach, &mut Pieces::default());
+        let yes = surface.holds([new].into_iter(), reach, &mut PieceQueue::default());
         if share < 1.0 {
             assert!(
                 !yes,
@@ -94,7 +96,7 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
         let mut live: Vec<Option<[DVec3; 3]>> = original.iter().map(|&t| Some(t)).collect();
         let mut coverage = Coverage::new(mesh.positions(), mesh.triangles());
         let reach = Reach::new(0.1 + 0.5 * random.unit(), 3.0).expect("large enough");
-        let (mut trial, mut change) = (Trial::default(), Change::default());
+        let (mut trial, mut change) = (Trial::default(), WitnessChange::default());
         for _ in 0..12 {
             // Some neighbours go; all but one of them come back, bent.
             let first = random.below(live.len());
