@@ -24,5 +24,5 @@ pub use pixel_rect::PixelRect;
 pub use sample_key::SampleKey;
 pub use scene::Scene;
 pub use unrender::{
-    Added, BucketEngine, Change, LayerEngine, Model, Unrender, UnrenderScratch, ViewSubset,
+    Added, BucketEngine, LayerEngine, Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset,
 };

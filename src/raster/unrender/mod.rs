@@ -19,7 +19,7 @@ use crate::view::{Interpolation, ViewSet};
 /// A triangle that a change puts into the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Added {
-    /// Its id; also in [`Change::removed`] where a triangle changes its shape or its shading.
+    /// Its id; also in [`SceneEdit::removed`] where a triangle changes its shape or its shading.
     pub id: u32,
     /// Its vertices.
     pub corners: [u32; 3],
@@ -27,17 +27,17 @@ pub struct Added {
     pub colors: [[f64; 3]; 3],
 }
 
-/// A change of the mesh, as the pictures see it: an edge collapse, a move, a flip, a removal.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Change<'a> {
+/// A change of the mesh, as the pictures see it: an edge collapse, a move, a flip, a removal. Reused as a buffer.
+#[derive(Clone, Debug, Default)]
+pub struct SceneEdit {
     /// Ids of the triangles that disappear or change.
-    pub removed: &'a [u32],
+    pub removed: Vec<u32>,
     /// The triangles that appear or have changed.
-    pub added: &'a [Added],
+    pub added: Vec<Added>,
     /// New positions; every triangle at such a vertex is in `removed`.
-    pub moved: &'a [(u32, DVec3)],
+    pub moved: Vec<(u32, DVec3)>,
     /// New unit vertex normals, where a view is Gouraud shaded; every triangle at such a vertex is in `removed`.
-    pub normals: &'a [(u32, DVec3)],
+    pub normals: Vec<(u32, DVec3)>,
 }
 
 /// The views that an evaluation takes into account.
@@ -75,15 +75,10 @@ pub trait Unrender: fmt::Debug + Send + Sync {
     fn lone_scratch(&self) -> UnrenderScratch;
 
     /// Returns what the change would add to the sum of squared differences over `views`, without making it.
-    fn evaluate(
-        &self,
-        change: &Change<'_>,
-        views: ViewSubset,
-        scratch: &mut UnrenderScratch,
-    ) -> i64;
+    fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64;
 
     /// Makes the change and gives what it added to the sum of squared differences.
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64;
+    fn commit(&mut self, edit: &SceneEdit, scratch: &mut UnrenderScratch) -> i64;
 
     /// The luma of every sample of a view.
     fn luma(&self, view: usize) -> Grid<u8>;
@@ -146,16 +141,16 @@ impl Model {
         }
     }
 
-    pub(super) fn apply(&mut self, change: &Change<'_>) {
-        for &(v, p) in change.moved {
+    pub(super) fn apply(&mut self, edit: &SceneEdit) {
+        for &(v, p) in &edit.moved {
             self.positions[v as usize] = p;
         }
         if !self.normals.is_empty() {
-            for &(v, n) in change.normals {
+            for &(v, n) in &edit.normals {
                 self.normals[v as usize] = n;
             }
         }
-        for face in change.added {
+        for face in &edit.added {
             self.corners[face.id as usize] = face.corners;
             if let Some(colors) = self.colors.get_mut(face.id as usize) {
                 *colors = face.colors;
@@ -165,9 +160,8 @@ impl Model {
 
     /// The position of a vertex after the change.
     #[inline]
-    pub(super) fn position_after(&self, change: &Change<'_>, vertex: u32) -> DVec3 {
-        change
-            .moved
+    pub(super) fn position_after(&self, edit: &SceneEdit, vertex: u32) -> DVec3 {
+        edit.moved
             .iter()
             .find(|m| m.0 == vertex)
             .map_or_else(|| self.positions[vertex as usize], |m| m.1)
@@ -177,10 +171,10 @@ impl Model {
     #[inline]
     pub(super) fn geometry_after(
         &self,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         face: &Added,
     ) -> (FaceGeometry, [DVec3; 3]) {
-        let positions = face.corners.map(|v| self.position_after(change, v));
+        let positions = face.corners.map(|v| self.position_after(edit, v));
         (FaceGeometry::new(positions), positions)
     }
 }

@@ -34,4 +34,3 @@ pub use polish::{Limits, Polish, PolishCounters, Turn, polish};
 pub use preset::Preset;
 pub use reference_images::ReferenceImages;
 pub use report::ImageReport;
-pub use scene_edit::SceneEdit;

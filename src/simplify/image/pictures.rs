@@ -3,7 +3,7 @@
 
 use super::{
     EngineName, ReferenceImages,
-    scene_edit::{SceneEdit, Slots},
+    scene_edit::{Slots, Translator},
 };
 use crate::{
     collapse::{LiveMesh, Patch},
@@ -35,7 +35,7 @@ pub struct Pictures {
 #[derive(Debug)]
 pub struct PictureScratch {
     engine: UnrenderScratch,
-    edit: SceneEdit,
+    translator: Translator,
 }
 
 impl Pictures {
@@ -111,7 +111,7 @@ impl Pictures {
     pub fn scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.scratch(),
-            edit: SceneEdit::default(),
+            translator: Translator::default(),
         }
     }
 
@@ -120,7 +120,7 @@ impl Pictures {
     pub fn lone_scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.lone_scratch(),
-            edit: SceneEdit::default(),
+            translator: Translator::default(),
         }
     }
 
@@ -133,16 +133,16 @@ impl Pictures {
         views: ViewSubset,
         scratch: &mut PictureScratch,
     ) -> i64 {
-        let PictureScratch { engine, edit } = scratch;
-        edit.fill(&self.slots, live, patch, self.gouraud);
-        self.engine.evaluate(&edit.as_change(), views, engine)
+        let PictureScratch { engine, translator } = scratch;
+        translator.fill(&self.slots, live, patch, self.gouraud);
+        self.engine.evaluate(&translator.edit, views, engine)
     }
 
     /// Follows a patch, before or after `live` has it, and returns its addition to the error.
     pub fn commit(&mut self, live: &LiveMesh, patch: &Patch, scratch: &mut PictureScratch) -> i64 {
-        let PictureScratch { engine, edit } = scratch;
-        edit.fill(&self.slots, live, patch, self.gouraud);
-        let cost = self.engine.commit(&edit.as_change(), engine);
+        let PictureScratch { engine, translator } = scratch;
+        translator.fill(&self.slots, live, patch, self.gouraud);
+        let cost = self.engine.commit(&translator.edit, engine);
         self.sum = self.sum.wrapping_add_signed(cost);
         cost
     }

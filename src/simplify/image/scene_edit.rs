@@ -10,7 +10,7 @@ use crate::{
     collapse::{LiveMesh, NONE, Patch},
     mesh::{Channel, ChannelKind},
     num::math::unit,
-    raster::{Added, Change, FaceGeometry, Scene},
+    raster::{Added, FaceGeometry, Scene, SceneEdit},
 };
 
 /// Numbers of the mesh's triangles and vertices in the pictures.
@@ -86,45 +86,33 @@ struct ShadedFace {
     area_normal: DVec3,
 }
 
-/// Buffers that hold a [`Change`].
+/// Translates patches of the mesh to edits of the pictures; the buffers are reused.
 #[derive(Clone, Debug, Default)]
-pub struct SceneEdit {
-    removed: Vec<u32>,
-    added: Vec<Added>,
-    moved: Vec<(u32, DVec3)>,
-    normals: Vec<(u32, DVec3)>,
+pub(super) struct Translator {
+    /// The last patch, for an un-rendering engine.
+    pub(super) edit: SceneEdit,
     vertices: Vec<u32>,
     faces: Vec<ShadedFace>,
 }
 
-impl SceneEdit {
-    /// The change, for an un-rendering engine.
-    #[must_use]
-    pub fn as_change(&self) -> Change<'_> {
-        Change {
-            removed: &self.removed,
-            added: &self.added,
-            moved: &self.moved,
-            normals: &self.normals,
-        }
-    }
-
+impl Translator {
     /// Translates `patch`; the same before and after `live` has applied it. `gouraud` adds the changed normals and the
     /// triangles that they touch.
     pub(super) fn fill(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch, gouraud: bool) {
-        self.removed.clear();
-        self.added.clear();
-        self.moved.clear();
-        self.normals.clear();
+        self.edit.removed.clear();
+        self.edit.added.clear();
+        self.edit.moved.clear();
+        self.edit.normals.clear();
         let triangle = |id: u32| slots.triangles[id as usize];
-        self.removed
+        self.edit
+            .removed
             .extend(patch.removed.iter().map(|face| triangle(face.id)));
-        self.added.extend(patch.added.iter().map(|face| Added {
+        self.edit.added.extend(patch.added.iter().map(|face| Added {
             id: triangle(face.id),
             corners: face.corners.map(|v| slots.vertices[v as usize]),
             colors: slots.colors(live, &patch.rows, face.wedges),
         }));
-        self.moved.extend(
+        self.edit.moved.extend(
             patch
                 .moved
                 .iter()
@@ -171,8 +159,8 @@ impl SceneEdit {
         self.faces.dedup_by_key(|f| f.id);
         for face in &self.faces[own..] {
             let id = slots.triangles[face.id as usize];
-            self.removed.push(id);
-            self.added.push(Added {
+            self.edit.removed.push(id);
+            self.edit.added.push(Added {
                 id,
                 corners: face.corners.map(|v| slots.vertices[v as usize]),
                 colors: slots.colors(live, &patch.rows, live.wedges(face.id)),
@@ -184,7 +172,7 @@ impl SceneEdit {
             let at = self.faces.iter().filter(|f| f.corners.contains(&v));
             let sum = at.fold(DVec3::ZERO, |sum, f| sum + f.area_normal);
             let normal = unit(sum).unwrap_or(DVec3::ZERO);
-            self.normals.push((slots.vertices[v as usize], normal));
+            self.edit.normals.push((slots.vertices[v as usize], normal));
         }
     }
 }
@@ -218,13 +206,13 @@ mod tests {
             let mut patch = Patch::default();
             site.patch(position, &mut patch);
             let (slots, _) = Slots::of(&live);
-            let mut change = SceneEdit::default();
+            let mut change = Translator::default();
             change.fill(&slots, &live, &patch, true);
-            let before = change.normals.clone();
+            let before = change.edit.normals.clone();
             live.apply(&patch, &mut Changes::default());
             change.fill(&slots, &live, &patch, true);
             assert_eq!(
-                change.normals, before,
+                change.edit.normals, before,
                 "the same before and after the commit"
             );
             let ids: Vec<u32> = (0..live.triangle_ids())

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
     raster::{
-        self, Added, BucketEngine, Change, Grid, LayerEngine, Model, Scene, Unrender, ViewSubset,
+        self, Added, BucketEngine, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender, ViewSubset,
     },
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
@@ -206,14 +206,7 @@ fn operate(before: &Patient, step: &Step) -> Option<Patient> {
     Some(after)
 }
 
-struct Difference {
-    removed: Vec<u32>,
-    added: Vec<Added>,
-    moved: Vec<(u32, DVec3)>,
-    normals: Vec<(u32, DVec3)>,
-}
-
-fn difference(before: &Patient, after: &Patient, gouraud: bool) -> Difference {
+fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
     let vertices = 0..before.positions.len() as u32;
     let moved: Vec<(u32, DVec3)> = vertices
         .clone()
@@ -231,7 +224,7 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> Difference {
                 .any(|v| moved.iter().any(|m| m.0 == *v) || normals.iter().any(|n| n.0 == *v))
         })
     };
-    let mut found = Difference {
+    let mut found = SceneEdit {
         removed: Vec::new(),
         added: Vec::new(),
         moved: moved.clone(),
@@ -273,9 +266,7 @@ proptest! {
         let mut error = 0_i64;
         for step in &steps {
             let Some(after) = operate(&now, step) else { continue };
-            let d = difference(&now, &after, gouraud);
-            let change =
-                Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
+            let change = difference(&now, &after, gouraud);
             let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
             let costs = [
                 buckets.evaluate(&change, ViewSubset::All, &mut scratches.0),
@@ -313,8 +304,7 @@ proptest! {
         let set = ViewSet { views: more, ..own };
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
         let Some(after) = operate(&start, &step) else { return Ok(()) };
-        let d = difference(&start, &after, gouraud);
-        let change = Change { removed: &d.removed, added: &d.added, moved: &d.moved, normals: &d.normals };
+        let change = difference(&start, &after, gouraud);
         let [before, sums] = [&start, &after].map(|patient| {
             let sums = set.views.iter().map(|v| raster::luma_sums(&patient.scene(), v, &set));
             sums.collect::<Vec<Grid<u16>>>()

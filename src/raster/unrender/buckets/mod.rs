@@ -11,7 +11,7 @@ mod view;
 use glam::DVec3;
 
 use self::view::{BucketView, PartScratch};
-use super::{Change, Model, Unrender, UnrenderScratch, ViewSubset};
+use super::{Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset};
 use crate::{
     parallel,
     raster::{FaceGeometry, Grid, SampleKey},
@@ -55,12 +55,12 @@ impl BucketEngine {
         })
     }
 
-    fn begin(&self, change: &Change<'_>, scratch: &mut BucketScratch) {
+    fn begin(&self, edit: &SceneEdit, scratch: &mut BucketScratch) {
         scratch.geometry.clear();
-        let geometry = change
+        let geometry = edit
             .added
             .iter()
-            .map(|face| self.model.geometry_after(change, face));
+            .map(|face| self.model.geometry_after(edit, face));
         scratch.geometry.extend(geometry);
     }
 }
@@ -74,36 +74,31 @@ impl Unrender for BucketEngine {
         self.buffers(parallel::threads().min(PARTS).min(self.views.len()).max(1))
     }
 
-    fn evaluate(
-        &self,
-        change: &Change<'_>,
-        views: ViewSubset,
-        scratch: &mut UnrenderScratch,
-    ) -> i64 {
+    fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut BucketScratch = scratch.of();
-        self.begin(change, scratch);
+        self.begin(edit, scratch);
         let geometry = &scratch.geometry;
         let chosen = self.views.iter().enumerate();
         let chosen = chosen.filter(|&(i, _)| views.contains(i));
         let chosen: Vec<&BucketView> = chosen.map(|(_, view)| view).collect();
         in_parts(chosen, &mut scratch.parts, &|view: &BucketView, part| {
-            let region = view.redraw(&self.model, change, geometry, part);
+            let region = view.redraw(&self.model, edit, geometry, part);
             view.difference(region, part)
         })
     }
 
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64 {
+    fn commit(&mut self, edit: &SceneEdit, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut BucketScratch = scratch.of();
-        self.begin(change, scratch);
+        self.begin(edit, scratch);
         let (model, geometry) = (&self.model, &scratch.geometry);
         let views: Vec<&mut BucketView> = self.views.iter_mut().collect();
         let sum = in_parts(views, &mut scratch.parts, &|view: &mut BucketView, part| {
-            let region = view.redraw(model, change, geometry, part);
+            let region = view.redraw(model, edit, geometry, part);
             let sum = view.difference(region, part);
-            view.apply(change, geometry, region, part);
+            view.apply(edit, geometry, region, part);
             sum
         });
-        self.model.apply(change);
+        self.model.apply(edit);
         sum
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    super::{Added, Change, Model, difference},
+    super::{Added, Model, SceneEdit, difference},
     lines::{Buckets, Stamps},
 };
 use crate::{
@@ -152,7 +152,7 @@ impl BucketView {
     fn face_after(
         &self,
         model: &Model,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         added: &Added,
         geometry: &(FaceGeometry, [DVec3; 3]),
         (moved, shaded): (&[ScreenVertex], &[f64]),
@@ -165,15 +165,14 @@ impl BucketView {
                 colors,
             )
         } else {
-            let intensity = |v: u32| match change.normals.iter().position(|n| n.0 == v) {
+            let intensity = |v: u32| match edit.normals.iter().position(|n| n.0 == v) {
                 Some(i) => shaded[i],
                 None => self.intensities[v as usize],
             };
             Paint::gouraud(added.corners.map(intensity), colors)
         };
         let screen = added.corners.map(|v| {
-            change
-                .moved
+            edit.moved
                 .iter()
                 .position(|m| m.0 == v)
                 .map_or_else(|| self.screen[v as usize], |i| moved[i])
@@ -189,17 +188,17 @@ impl BucketView {
     pub(super) fn redraw(
         &self,
         model: &Model,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         geometry: &[(FaceGeometry, [DVec3; 3])],
         scratch: &mut PartScratch,
     ) -> PixelRect {
-        let region = self.set_up(model, change, geometry, scratch);
+        let region = self.set_up(model, edit, geometry, scratch);
         scratch.keys.clear();
         scratch.luma.clear();
         if region.is_empty() {
             return region;
         }
-        let uncovered = self.clear_removed(change, region, scratch);
+        let uncovered = self.clear_removed(edit, region, scratch);
         let PartScratch {
             stamps,
             found,
@@ -228,29 +227,29 @@ impl BucketView {
     fn set_up(
         &self,
         model: &Model,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         geometry: &[(FaceGeometry, [DVec3; 3])],
         scratch: &mut PartScratch,
     ) -> PixelRect {
-        let moved = change.moved.iter().map(|m| self.projector.screen(m.1));
+        let moved = edit.moved.iter().map(|m| self.projector.screen(m.1));
         scratch.moved.clear();
         scratch.moved.extend(moved);
         scratch.shaded.clear();
         if !self.intensities.is_empty() {
-            let normals = change.normals.iter();
+            let normals = edit.normals.iter();
             let intensity =
-                |&(v, n): &(u32, DVec3)| self.shader.intensity(model.position_after(change, v), n);
+                |&(v, n): &(u32, DVec3)| self.shader.intensity(model.position_after(edit, v), n);
             scratch.shaded.extend(normals.map(intensity));
         }
         let mut region = PixelRect::EMPTY;
-        for &id in change.removed {
+        for &id in &edit.removed {
             region = region.union(self.extents[id as usize]);
         }
         scratch.setups.clear();
         scratch.added_extents.clear();
-        for (added, geometry) in change.added.iter().zip(geometry) {
+        for (added, geometry) in edit.added.iter().zip(geometry) {
             let after = (&*scratch.moved, &*scratch.shaded);
-            let face = self.face_after(model, change, added, geometry, after);
+            let face = self.face_after(model, edit, added, geometry, after);
             let mut extent = PixelRect::EMPTY;
             face.pieces(&self.projector, self.view.cull, |setup, paint| {
                 extent = extent.union(setup.bounds());
@@ -266,11 +265,11 @@ impl BucketView {
     /// bounding box of such pixels.
     fn clear_removed(
         &self,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         region: PixelRect,
         scratch: &mut PartScratch,
     ) -> PixelRect {
-        scratch.stamps.leave_out(change.removed);
+        scratch.stamps.leave_out(&edit.removed);
         let mut uncovered = PixelRect::EMPTY;
         for y in region.y0..region.y1 {
             let start = y as usize * self.luma.width() as usize;
@@ -329,20 +328,17 @@ impl BucketView {
     /// Makes the change that [`BucketView::redraw`] has drawn.
     pub(super) fn apply(
         &mut self,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         geometry: &[(FaceGeometry, [DVec3; 3])],
         region: PixelRect,
         scratch: &PartScratch,
     ) {
-        for &id in change.removed {
+        for &id in &edit.removed {
             self.buckets.remove(id, self.extents[id as usize]);
             self.extents[id as usize] = PixelRect::EMPTY;
         }
-        for ((added, extent), geometry) in change
-            .added
-            .iter()
-            .zip(&scratch.added_extents)
-            .zip(geometry)
+        for ((added, extent), geometry) in
+            edit.added.iter().zip(&scratch.added_extents).zip(geometry)
         {
             self.extents[added.id as usize] = *extent;
             self.buckets.insert(added.id, *extent);
@@ -350,10 +346,10 @@ impl BucketView {
                 self.levels[added.id as usize] = self.level(&geometry.0);
             }
         }
-        for (&(v, _), &screen) in change.moved.iter().zip(&scratch.moved) {
+        for (&(v, _), &screen) in edit.moved.iter().zip(&scratch.moved) {
             self.screen[v as usize] = screen;
         }
-        for (&(v, _), &intensity) in change.normals.iter().zip(&scratch.shaded) {
+        for (&(v, _), &intensity) in edit.normals.iter().zip(&scratch.shaded) {
             self.intensities[v as usize] = intensity;
         }
         let (width, stride) = (region.width(), self.luma.width() as usize);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{Added, Change, Model};
+use super::super::{Added, Model, SceneEdit};
 use crate::raster::FaceGeometry;
 
 /// No vertex, or no entry.
@@ -13,20 +13,20 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Corner {
     /// The vertex.
     pub(super) vertex: u32,
-    /// Its entry in [`Change::moved`].
+    /// Its entry in [`SceneEdit::moved`].
     moved: u32,
-    /// Its entry in [`Change::normals`].
+    /// Its entry in [`SceneEdit::normals`].
     shaded: u32,
 }
 
 impl Corner {
-    /// The entry of the vertex in [`Change::moved`], if it moves.
+    /// The entry of the vertex in [`SceneEdit::moved`], if it moves.
     #[inline]
     pub(super) fn moved(self) -> Option<usize> {
         (self.moved != NONE).then_some(self.moved as usize)
     }
 
-    /// The entry of the vertex in [`Change::normals`], if its normal changes.
+    /// The entry of the vertex in [`SceneEdit::normals`], if its normal changes.
     #[inline]
     pub(super) fn shaded(self) -> Option<usize> {
         (self.shaded != NONE).then_some(self.shaded as usize)
@@ -68,7 +68,7 @@ pub(super) struct ChangeSet {
     pub(super) rim: Vec<u32>,
     /// Vertices of gone triangles that are not in the rim.
     pub(super) inside: Vec<u32>,
-    /// Entries of [`Change::moved`] that fresh triangles use.
+    /// Entries of [`SceneEdit::moved`] that fresh triangles use.
     pub(super) moved: Vec<u32>,
     /// By triangle: 0 stays, 1 goes, more is restyled.
     fates: Vec<u16>,
@@ -112,14 +112,14 @@ impl ChangeSet {
     }
 
     /// Sorts out a change of the model; `flat` where a view needs the geometry of faces.
-    pub(super) fn fill(&mut self, model: &Model, change: &Change<'_>, flat: bool) {
+    pub(super) fn fill(&mut self, model: &Model, edit: &SceneEdit, flat: bool) {
         self.forget();
-        self.gone.extend_from_slice(change.removed);
-        for &id in change.removed {
+        self.gone.extend_from_slice(&edit.removed);
+        for &id in &edit.removed {
             self.fates[id as usize] = 1;
         }
-        for face in change.added {
-            let after = after(model, change, face, flat);
+        for face in &edit.added {
+            let after = after(model, edit, face, flat);
             let index = self.restyled.len() + 2;
             if self.goes(face.id)
                 && model.corners[face.id as usize] == face.corners
@@ -169,18 +169,18 @@ impl ChangeSet {
     }
 }
 
-fn after(model: &Model, change: &Change<'_>, face: &Added, flat: bool) -> After {
+fn after(model: &Model, edit: &SceneEdit, face: &Added, flat: bool) -> After {
     let entry = |list: &[(u32, DVec3)], v: u32| {
         let found = list.iter().position(|e| e.0 == v);
         found.map_or(NONE, |i| i as u32)
     };
     let corners = face.corners.map(|vertex| Corner {
         vertex,
-        moved: entry(change.moved, vertex),
-        shaded: entry(change.normals, vertex),
+        moved: entry(&edit.moved, vertex),
+        shaded: entry(&edit.normals, vertex),
     });
     let positions = corners.map(|c| match c.moved() {
-        Some(i) => change.moved[i].1,
+        Some(i) => edit.moved[i].1,
         None => model.positions[c.vertex as usize],
     });
     let geometry = if flat {

@@ -21,7 +21,7 @@ use self::{
     view::{LayerView, ProbeContext},
     view_delta::ViewDelta,
 };
-use super::{Change, Model, Unrender, UnrenderScratch, ViewSubset};
+use super::{Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset};
 use crate::{
     parallel,
     raster::{Grid, SampleKey},
@@ -121,7 +121,7 @@ impl Part {
     /// other views mean nothing.
     fn begin(
         &self,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         changes: &ChangeSet,
         lanes: u64,
         scratch: &mut PartScratch,
@@ -129,8 +129,8 @@ impl Part {
         let PartScratch {
             moved, fresh, all, ..
         } = scratch;
-        moved.resize(change.moved.len());
-        for (entry, m) in change.moved.iter().enumerate() {
+        moved.resize(edit.moved.len());
+        for (entry, m) in edit.moved.iter().enumerate() {
             for lane in each(lanes) {
                 moved.set(entry, lane, self.views[lane].projector.screen(m.1));
             }
@@ -153,7 +153,7 @@ impl Part {
     fn evaluate(
         &self,
         model: &Model,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         changes: &ChangeSet,
         lanes: u64,
         scratch: &mut PartScratch,
@@ -161,12 +161,12 @@ impl Part {
         if lanes == 0 {
             return 0;
         }
-        let uncovers = self.begin(change, changes, lanes, scratch);
+        let uncovers = self.begin(edit, changes, lanes, scratch);
         let mut sum = 0;
         for lane in each(lanes) {
             let context = ProbeContext {
                 model,
-                change,
+                edit,
                 changes,
                 lanes: &self.lanes,
                 moved: &scratch.moved,
@@ -186,17 +186,17 @@ impl Part {
     fn commit(
         &mut self,
         model: &Model,
-        change: &Change<'_>,
+        edit: &SceneEdit,
         changes: &ChangeSet,
         scratch: &mut PartScratch,
     ) -> i64 {
-        let uncovers = self.begin(change, changes, all(self.views.len()), scratch);
+        let uncovers = self.begin(edit, changes, all(self.views.len()), scratch);
         let lane_count = self.views.len();
         let mut sum = 0;
         for (lane, view) in self.views.iter_mut().enumerate() {
             let context = ProbeContext {
                 model,
-                change,
+                edit,
                 changes,
                 lanes: &self.lanes,
                 moved: &scratch.moved,
@@ -221,12 +221,12 @@ impl Part {
                 }
             }
         }
-        for (entry, &(v, _)) in change.moved.iter().enumerate() {
+        for (entry, &(v, _)) in edit.moved.iter().enumerate() {
             self.lanes.copy(v as usize, &scratch.moved, entry);
         }
         if !self.intensities.is_empty() {
-            for &(v, normal) in change.normals {
-                let position = model.position_after(change, v);
+            for &(v, normal) in &edit.normals {
+                let position = model.position_after(edit, v);
                 for (lane, view) in self.views.iter().enumerate() {
                     self.intensities[v as usize * lane_count + lane] =
                         view.intensity(position, normal);
@@ -326,21 +326,16 @@ impl Unrender for LayerEngine {
         self.buffers(true)
     }
 
-    fn evaluate(
-        &self,
-        change: &Change<'_>,
-        views: ViewSubset,
-        scratch: &mut UnrenderScratch,
-    ) -> i64 {
+    fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut LayerScratch = scratch.of();
-        scratch.changes.fill(&self.model, change, self.flat);
+        scratch.changes.fill(&self.model, edit, self.flat);
         let (model, changes) = (&self.model, &scratch.changes);
         let work = |i: usize, scratch: &mut PartScratch| {
             let part = &self.parts[i];
             let lanes = each(all(part.views.len()));
             let lanes = lanes.filter(|lane| views.contains(part.indices[*lane]));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
-            part.evaluate(model, change, changes, lanes, scratch)
+            part.evaluate(model, edit, changes, lanes, scratch)
         };
         if scratch.lone && self.parts.len() > 1 {
             parallel::sum_mut(&mut scratch.parts, &work)
@@ -350,12 +345,12 @@ impl Unrender for LayerEngine {
         }
     }
 
-    fn commit(&mut self, change: &Change<'_>, scratch: &mut UnrenderScratch) -> i64 {
+    fn commit(&mut self, edit: &SceneEdit, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut LayerScratch = scratch.of();
-        scratch.changes.fill(&self.model, change, self.flat);
+        scratch.changes.fill(&self.model, edit, self.flat);
         let (model, changes) = (&self.model, &scratch.changes);
         let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
-            part.commit(model, change, changes, scratch)
+            part.commit(model, edit, changes, scratch)
         };
         let count = self.parts.len();
         let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
@@ -365,7 +360,7 @@ impl Unrender for LayerEngine {
         } else {
             pairs.map(work).sum()
         };
-        self.model.apply(change);
+        self.model.apply(edit);
         sum
     }
 

@@ -31,9 +31,9 @@ impl LayerView {
         delta.pieces.clear();
         delta.intensities.clear();
         if self.gouraud {
-            let normals = context.change.normals.iter();
+            let normals = context.edit.normals.iter();
             delta.intensities.extend(normals.map(|&(v, n)| {
-                let position = context.model.position_after(context.change, v);
+                let position = context.model.position_after(context.edit, v);
                 self.shader.intensity(position, n)
             }));
         }

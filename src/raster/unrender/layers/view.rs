@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    super::{Change, Model},
+    super::{Model, SceneEdit},
     change_set::{After, ChangeSet, Corner, Fate},
     fragment_lists::{FragmentLists, TILE},
     hi_z::HiZ,
@@ -19,7 +19,7 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ProbeContext<'a> {
     pub(super) model: &'a Model,
-    pub(super) change: &'a Change<'a>,
+    pub(super) edit: &'a SceneEdit,
     pub(super) changes: &'a ChangeSet,
     /// Vertices as they are, and those that move as they will be.
     pub(super) lanes: &'a Projected,
