@@ -27,7 +27,7 @@
 use glam::DVec2;
 
 use super::{
-    Aperture, Interval, ViewerSegment,
+    Aperture, Disc, Interval, ViewerSegment,
     interval::Bounds,
     point::{Tangent, tangents},
 };
@@ -199,9 +199,10 @@ impl Projection {
         true
     }
 
-    /// False only where [`Projection::may_reach`] is for every point of a disc (centre, radius).
+    /// False only where [`Projection::may_reach`] is for every point of a disc.
     #[must_use]
-    pub fn may_reach_any(&self, (centre, radius): (DVec2, f64), offsets: Interval) -> bool {
+    pub fn may_reach_any(&self, disc: Disc, offsets: Interval) -> bool {
+        let Disc { centre, radius } = disc;
         let local = self.cell.enter(centre);
         let d = self.direction;
         let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);

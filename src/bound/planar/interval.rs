@@ -1,4 +1,4 @@
-//! Intervals of lines with one normal, by their offsets.
+//! Intervals of lines with one normal, by their offsets, and discs that such lines may reach.
 
 use glam::DVec2;
 
@@ -47,6 +47,15 @@ impl Interval {
     pub fn contains(self, rho: f64) -> bool {
         self.min <= rho && rho <= self.max
     }
+}
+
+/// A disc in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Its centre.
+    pub centre: DVec2,
+    /// Its radius.
+    pub radius: f64,
 }
 
 /// An interval in the making.

@@ -15,7 +15,7 @@ mod widest;
 
 pub use aperture::Aperture;
 pub use face::Projection;
-pub use interval::Interval;
+pub use interval::{Disc, Interval};
 pub use point::{Extent, Tangent, segment_extent, tangents, viewpoint_extent};
 pub use points::{Rays, segment_extents};
 pub use viewer_segment::ViewerSegment;

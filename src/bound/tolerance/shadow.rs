@@ -46,15 +46,12 @@ pub fn shadows(
         for k in 0..3 {
             let (from, to) = (cap[k], cap[(k + 1) % 3]);
             for end in part {
-                bounds.extend(separating(
-                    (from, (to - from).cross(end - from)),
-                    cap,
-                    part,
-                    tolerance,
-                ));
+                let plane = HalfSpace::behind(from, (to - from).cross(end - from));
+                bounds.extend(plane.and_then(|p| separating(p, cap, part, tolerance)));
             }
             let across = (part[1] - part[0]).cross(cap[k] - part[0]);
-            bounds.extend(separating((part[0], across), cap, part, tolerance));
+            let plane = HalfSpace::behind(part[0], across);
+            bounds.extend(plane.and_then(|p| separating(p, cap, part, tolerance)));
         }
         found.push(bounds);
     }
@@ -63,12 +60,11 @@ pub fn shadows(
 
 /// The side of a plane that has the whole cap, where the other side has the whole source.
 fn separating(
-    (point, normal): (DVec3, DVec3),
+    plane: HalfSpace,
     cap: [DVec3; 3],
     source: [DVec3; 2],
     tolerance: f64,
 ) -> Option<HalfSpace> {
-    let plane = HalfSpace::behind(point, normal)?;
     let extremes = |points: &[DVec3]| {
         let heights = points.iter().map(|&p| plane.excess(p));
         heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| {

@@ -136,12 +136,12 @@ pub(super) fn refine(
                 look(&three, &viewers, seen);
                 add(&mut open, three, viewers.clone());
             }
-        } else if viewer.2 > apart.2 {
+        } else if viewer.length2 > apart.length2 {
             for half in halves(&viewers, viewer, |a, b| (a + b) * 0.5) {
                 look(&corners, &half, seen);
                 add(&mut open, corners.clone(), half);
             }
-        } else if apart.2 > 0.0 {
+        } else if apart.length2 > 0.0 {
             let middle = |a: [DVec3; 2], b: [DVec3; 2]| [0, 1].map(|k| (a[k] + b[k]) * 0.5);
             for half in halves(&corners, apart, middle) {
                 look(&half, &viewers, seen);
@@ -219,30 +219,38 @@ fn bound2(corners: &[[DVec3; 2]], viewers: &[DVec3]) -> f64 {
     upper2 * (1.0 + MARGIN)
 }
 
-/// The corners that are farthest apart, and the square of their distance.
-fn longest<T>(of: &[T], at: impl Fn(&T) -> DVec3) -> (usize, usize, f64) {
-    let mut found = (0, 0, 0.0);
+/// The longest side of a simplex or polygon: two corners and the square of their distance.
+#[derive(Clone, Copy, Default)]
+struct Side {
+    from: usize,
+    to: usize,
+    length2: f64,
+}
+
+/// The side between the corners that are farthest apart.
+fn longest<T>(of: &[T], at: impl Fn(&T) -> DVec3) -> Side {
+    let mut found = Side::default();
     for i in 0..of.len() {
         for j in i + 1..of.len() {
             let d = at(&of[j]) - at(&of[i]);
-            if d.dot(d) > found.2 {
-                found = (i, j, d.dot(d));
+            if d.dot(d) > found.length2 {
+                found = Side {
+                    from: i,
+                    to: j,
+                    length2: d.dot(d),
+                };
             }
         }
     }
     found
 }
 
-/// A simplex in two, halved between two corners.
-fn halves<T: Copy>(
-    of: &[T],
-    (i, j, _): (usize, usize, f64),
-    middle: impl Fn(T, T) -> T,
-) -> [Vec<T>; 2] {
-    let middle = middle(of[i], of[j]);
+/// Halves a simplex across a side.
+fn halves<T: Copy>(of: &[T], side: Side, middle: impl Fn(T, T) -> T) -> [Vec<T>; 2] {
+    let middle = middle(of[side.from], of[side.to]);
     let mut halves = [of.to_vec(), of.to_vec()];
-    halves[0][j] = middle;
-    halves[1][i] = middle;
+    halves[0][side.to] = middle;
+    halves[1][side.from] = middle;
     halves
 }
 

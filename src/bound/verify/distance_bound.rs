@@ -13,10 +13,24 @@ use glam::DVec3;
 use super::nearest::Facets;
 use crate::num::math::{length, sqrt};
 
-/// For each round: how often one triangle may be cut, and the share of the claim at which sides are not cut any more.
-const ROUNDS: [(usize, f64); 2] = [
-    (1 << 15, 1.0 / 256.0),
-    (1 << 12, 1.0 / (1_u64 << 30) as f64),
+/// Limits of a round of cuts of one triangle.
+#[derive(Clone, Copy)]
+struct Round {
+    /// Most cuts.
+    cuts: usize,
+    /// Length of sides that are not cut any more, as a share of the claim.
+    finest: f64,
+}
+
+const ROUNDS: [Round; 2] = [
+    Round {
+        cuts: 1 << 15,
+        finest: 1.0 / 256.0,
+    },
+    Round {
+        cuts: 1 << 12,
+        finest: 1.0 / (1_u64 << 30) as f64,
+    },
 ];
 
 /// Bounds of the largest distance of a triangle, in frame units.
@@ -51,8 +65,8 @@ pub(super) fn settle(
         near: guess,
     };
     let (mut open, mut left) = (vec![(corners, f64::INFINITY)], Vec::new());
-    for (cuts, finest) in ROUNDS {
-        finding.divide(surface, claim, (cuts, finest * claim), &mut open, &mut left);
+    for round in ROUNDS {
+        finding.divide(surface, claim, round, &mut open, &mut left);
         if finding.largest > claim {
             break;
         }
@@ -71,11 +85,11 @@ impl DistanceBound {
         &mut self,
         surface: &Facets,
         claim: f64,
-        (most, finest): (usize, f64),
+        round: Round,
         open: &mut Vec<Part>,
         left: &mut Vec<Part>,
     ) {
-        let mut cuts = 0;
+        let (mut cuts, finest) = (0, round.finest * claim);
         while let Some((part, known)) = open.pop() {
             let [a, b, c] = part;
             let middle = (a + b + c) / 3.0;
@@ -97,7 +111,7 @@ impl DistanceBound {
             }
             let sides = [length(b - a), length(c - b), length(a - c)];
             let longest = sides[0].max(sides[1]).max(sides[2]);
-            if distance > claim || longest <= finest || cuts == most || longest <= 1e-12 {
+            if distance > claim || longest <= finest || cuts == round.cuts || longest <= 1e-12 {
                 left.push((part, bound));
                 continue;
             }

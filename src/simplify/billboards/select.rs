@@ -16,7 +16,7 @@ use super::{
     bearing::{Bearing, Turn, grid, half_steps},
     plan::{Limits, PlanFace},
     sweep::{Stab, Sweep},
-    tree::PlanTree,
+    tree::{Growth, PlanTree},
     viewers_in_plan::PlanCell,
 };
 use crate::{Progress, Result, bound::planar::Interval, parallel};
@@ -212,7 +212,11 @@ impl Selection<'_> {
                 interval.min <= wanted.max && wanted.min <= interval.max
             }
         };
-        let near = self.tree.near(&limits, offsets, (2.0 * reach, centre));
+        let growth = Growth {
+            slope: 2.0 * reach,
+            centre,
+        };
+        let near = self.tree.near(&limits, offsets, growth);
         let near = parallel::filter_map(near.len(), |i| Some(near[i]).filter(is_near));
         let mut best = (stab, bearing);
         for _ in 0..HALVINGS {

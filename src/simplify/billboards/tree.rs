@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::plan::{Limits, PlanFace};
-use crate::bound::planar::Interval;
+use crate::bound::planar::{Disc, Interval};
 
 /// Faces in a leaf.
 const LEAF: usize = 8;
@@ -29,6 +29,15 @@ struct Node {
 pub(super) struct PlanTree {
     nodes: Vec<Node>,
     order: Vec<u32>,
+}
+
+/// Growth of offsets with the distance of a face's middle from a point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Growth {
+    /// Offset per distance.
+    pub(super) slope: f64,
+    /// The point.
+    pub(super) centre: DVec2,
 }
 
 impl PlanTree {
@@ -84,26 +93,26 @@ impl PlanTree {
         self.grow(faces, right, first + middle);
     }
 
-    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets. These grow for
-    /// a face by `slope` for every unit that its middle is away from `centre`, at either end.
-    pub(super) fn near(
-        &self,
-        limits: &Limits,
-        offsets: Interval,
-        (slope, centre): (f64, DVec2),
-    ) -> Vec<u32> {
+    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets, which grow for
+    /// a face by `growth`, at either end.
+    pub(super) fn near(&self, limits: &Limits, offsets: Interval, growth: Growth) -> Vec<u32> {
         let mut found = Vec::new();
         let mut open = vec![0_u32];
         while let Some(at) = open.pop() {
             let Some(node) = self.nodes.get(at as usize) else {
                 break;
             };
-            let more = slope * (node.centre.distance(centre) + node.radius + node.half);
+            let away = node.centre.distance(growth.centre) + node.radius + node.half;
+            let more = growth.slope * away;
             let wanted = Interval {
                 min: offsets.min - more,
                 max: offsets.max + more,
             };
-            if !limits.may_reach_any((node.centre, node.radius), wanted) {
+            let disc = Disc {
+                centre: node.centre,
+                radius: node.radius,
+            };
+            if !limits.may_reach_any(disc, wanted) {
                 continue;
             }
             let first = node.link as usize;
@@ -119,13 +128,13 @@ impl PlanTree {
 
     /// As [`PlanTree::near`] for a single offset.
     pub(super) fn at(&self, limits: &Limits, rho: f64) -> Vec<u32> {
-        self.near(limits, Interval { min: rho, max: rho }, (0.0, DVec2::ZERO))
+        self.near(limits, Interval { min: rho, max: rho }, Growth::default())
     }
 }
 
 impl Limits {
     /// False only where no face with a point in a disc may be projected on a plane at one of `offsets`.
-    fn may_reach_any(&self, disc: (DVec2, f64), offsets: Interval) -> bool {
+    fn may_reach_any(&self, disc: Disc, offsets: Interval) -> bool {
         match self {
             Self::Parallel => false,
             Self::Viewers(sides) => sides.iter().all(|side| side.may_reach_any(disc, offsets)),
@@ -133,7 +142,7 @@ impl Limits {
                 direction,
                 distance,
             } => {
-                let (rho, radius) = (disc.0.dot(*direction), disc.1);
+                let (rho, radius) = (disc.centre.dot(*direction), disc.radius);
                 // Far above rounding.
                 let reach = (distance + radius) * (1.0 + 1e-9) + rho.abs() * 1e-12;
                 offsets.min - rho <= reach && rho - offsets.max <= reach
@@ -199,7 +208,11 @@ mod tests {
             let tree = PlanTree::new(&faces);
             let found = tree.at(&limits, rho);
             let slope = between(0.0, 0.1);
-            let wide = tree.near(&limits, Interval { min: rho, max: rho }, (slope, centre));
+            let wide = tree.near(
+                &limits,
+                Interval { min: rho, max: rho },
+                Growth { slope, centre },
+            );
             for (i, face) in (0_u32..).zip(&faces) {
                 if face.fits(&limits, rho) {
                     assert!(found.contains(&i), "case {case}, face {i}");

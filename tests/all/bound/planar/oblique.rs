@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use lodmark::bound::planar::{Aperture, Interval, Projection, ViewerSegment};
+use lodmark::bound::planar::{Aperture, Disc, Interval, Projection, ViewerSegment};
 
 use super::{
     case::{CLASSES, Case, SCALE, draw, turned},
@@ -328,7 +328,13 @@ fn a_quick_look_at_a_point_refuses_no_slanted_line_that_its_face_may_have() {
                         assert!(
                             projection.may_reach(p, wide)
                                 && projection.may_reach(p, Interval { min: rho, max: rho })
-                                && projection.may_reach_any((centre, radius * 1.000_001), wide),
+                                && projection.may_reach_any(
+                                    Disc {
+                                        centre,
+                                        radius: radius * 1.000_001
+                                    },
+                                    wide
+                                ),
                             "{class:?} {slant:?} {number}: {rho} of {valid:?}, {case:?}"
                         );
                     }
