@@ -1,4 +1,4 @@
-//! The list of methods, and what a method has to bring: a new one adds its folder, a line to the list at the end of
+//! The list of methods, and the trait that each has to implement: a new one adds its folder, a line to the list at the end of
 //! this file and, where it tells more than a mesh, a variant of [`Report`].
 
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use crate::{
     mesh::Mesh,
 };
 
-/// A method, as its options: they check themselves and run. All of it is asked for in one place each.
+/// A method, as its options: they check themselves and run.
 pub(super) trait MethodRun: Sync {
     /// Tests every option that has a range.
     ///
@@ -64,7 +64,7 @@ pub(super) enum ErrorLimit {
     Own,
 }
 
-/// What a method tells besides the mesh. Every method's folder says how its own is read from an [`Outcome`].
+/// The report of a method besides the mesh. Every method's folder says how its own is read from an [`Outcome`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Report {

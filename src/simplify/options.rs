@@ -20,7 +20,7 @@ use crate::{
 
 /// Everything a result depends on besides the input.
 ///
-/// Made by the constructor of a method, then changed step by step; the order of the steps does not matter. A step that
+/// Made by the constructor of a method, then changed step by step. A step that
 /// means nothing to the method is an error of [`Options::check`], and so of the run.
 ///
 /// ```
@@ -37,7 +37,7 @@ pub struct Options {
     /// When to stop.
     pub target: Target,
     /// Stop before the root mean square of the luma differences over the driving views exceeds this many levels;
-    /// only for methods that look at images.
+    /// only for the image-driven method.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rms: Option<f64>,
     /// The rules that collapses obey.
@@ -48,7 +48,7 @@ pub struct Options {
     #[serde(default)]
     pub measure_rank: u64,
     /// Move vertices after the last collapse where faces lie folded onto each other and those of the original do not;
-    /// only for methods that neither look at images nor give a guarantee.
+    /// only for methods that know neither pictures nor a guarantee.
     #[serde(default)]
     pub unfold: bool,
     /// The first step that meant nothing to the method.
@@ -150,8 +150,8 @@ impl Options {
         self
     }
 
-    /// Leaves folds and flipped faces as the collapses made them; only for methods that neither look at images nor
-    /// give a guarantee.
+    /// Leaves folds and flipped faces as the collapses made them; only for methods that know neither pictures
+    /// nor a guarantee.
     #[must_use]
     pub fn keep_folds(mut self) -> Self {
         if self.unfold {
@@ -169,7 +169,8 @@ impl Options {
 
 /// # Steps for the image-driven method
 impl Options {
-    /// A recipe: sets every option of the method that no other step has set, the schedule among them.
+    /// Sets every option of the method that no other step has set, the schedule among them, to those of a recipe. An
+    /// option that has the value of the recipe before counts as not set.
     #[must_use]
     pub fn preset(mut self, preset: Preset) -> Self {
         if let MethodOptions::Image(own) = &mut self.method {
@@ -225,7 +226,7 @@ impl Options {
         self.image_step("polish", |own| own.polish.sweeps = sweeps)
     }
 
-    /// How pictures follow the mesh; never changes a result.
+    /// The engine by which pictures follow the mesh; never changes a result.
     #[must_use]
     pub fn engine(self, engine: EngineName) -> Self {
         self.image_step("engine", |own| own.engine = engine)

@@ -1,9 +1,9 @@
-//! Opening folds that geometric methods leave.
+//! Repair of folds that geometric methods leave.
 //!
 //! Where the topology is kept, a thin handle or sheet ends as two layers of faces that lie on each other: nothing in a
 //! sum of squared distances or volumes is against it. Refusing such collapses would leave the handle with faces that are
 //! needed elsewhere (measured on the dragon at 8,191 triangles: 2 % more flat RMS), so they are allowed, and at the end
-//! vertices at the folds are moved, by as little as opens them (0.4 % more). What is folded in the original stays folded.
+//! vertices at the folds are moved, by as little as opens them (0.4 % more). Folds of the original stay.
 //! Faces that look where none of the original does are turned back in the same way. Both as [`crate::metric::folds`]
 //! counts them.
 
@@ -28,10 +28,10 @@ use crate::{
 /// Opened a little further than what counts as a fold.
 const OPEN_COSINE: f64 = FOLD_COSINE + 0.02;
 
-/// A flipped face has an edge of more than a right angle: no other face is looked at.
+/// A flipped face has an edge of more than a right angle: no other face is tested.
 const SHARP_COSINE: f64 = 0.0;
 
-/// One in so many faces of the original is looked at first.
+/// Every n-th face of the original is tested first.
 const FEW: usize = 16;
 
 /// Times that all faults are visited, at most; the dragon at five levels needed up to 15.
@@ -40,7 +40,7 @@ const SWEEPS: u32 = 32;
 /// Lengths of moves that are tried, in mean edges at the vertex.
 const STEPS: [f64; 6] = [0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0];
 
-/// The original, and where faces must look for it: what is near the faces of the simplified mesh, in frame units.
+/// The parts of the original that are near faces of the simplified mesh, in frame units.
 struct Nearby<'a> {
     original: &'a Mesh,
     reach: f64,
@@ -54,7 +54,7 @@ impl<'a> Nearby<'a> {
         Self { original, reach }
     }
 
-    /// What is near the middles of `sharp` edges and of the faces at them, of every `stride`-th face: all of them are
+    /// The part near the middles of `sharp` edges and of the faces at them, of every `stride`-th face: all of them are
     /// enough to find faults.
     fn at_faces(&self, live: &LiveMesh, sharp: &[u32], stride: usize) -> FramedMesh {
         let faces = faces_at(live, sharp).into_iter();
@@ -69,7 +69,7 @@ impl<'a> Nearby<'a> {
         self.within(live, boxes.chain(edges), stride)
     }
 
-    /// What is near the faces at some vertices, wherever one of those may go: enough to repair them.
+    /// The part near the faces at some vertices, wherever one of those may go: enough to repair them.
     fn at_vertices(&self, live: &LiveMesh, vertices: &[Vec<u32>]) -> FramedMesh {
         let boxes = vertices.iter().flatten().map(|&v| {
             let faces = live.triangles_at(v).filter_map(|f| live.points(f));
@@ -97,7 +97,7 @@ impl<'a> Nearby<'a> {
     }
 }
 
-/// Tells faults near which it knows the original.
+/// Finds faults where the original nearby is known.
 struct Faults(FoldReference);
 
 impl Faults {
@@ -123,7 +123,7 @@ impl Faults {
             .collect()
     }
 
-    /// How many of some faces are flipped.
+    /// Number of some faces that are flipped.
     fn flipped(&self, faces: impl Iterator<Item = [DVec3; 3]>) -> f64 {
         faces.filter(|&face| self.0.is_flipped(face)).count() as f64
     }
@@ -213,7 +213,7 @@ pub(super) fn repair_folds(
                 observer.committed(live, &search.patch);
             }
         }
-        // A move changes nothing but what is at the vertices of a fault.
+        // A move changes nothing but the faces at the vertices of a fault.
         let sharp = sharp_edges(live, Some(&left));
         left = faults.find(live, &sharp);
     }

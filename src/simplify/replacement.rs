@@ -1,4 +1,4 @@
-//! What stands for each point of an original where a simplified mesh alone is given: its nearest triangle.
+//! The replacement of each point of an original where a simplified mesh alone is given: its nearest triangle.
 
 use glam::DVec3;
 

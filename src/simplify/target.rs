@@ -1,10 +1,10 @@
-//! How far to simplify.
+//! The size that a run simplifies to.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
 
-/// How far to simplify.
+/// The size that a run simplifies to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

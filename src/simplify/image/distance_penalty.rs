@@ -1,4 +1,4 @@
-//! How far faces are from the original surface: what keeps pictures from buying looks with distance.
+//! The distance of faces from the original surface, as a penalty that keeps pictures from buying looks with distance.
 //!
 //! Pictures with few samples let a vertex drift along the line of sight, and what no picture shows is free for them. So
 //! shares are weighed: a change should gain a larger share of the image error than a weight times the share of the
@@ -14,13 +14,13 @@ use crate::{
     parallel,
 };
 
-/// How much of the least squares' trace holds a vertex where it is: sideways in a flat place nothing else does.
+/// Share of the least squares' trace that holds a vertex where it is: sideways in a flat place nothing else does.
 const HOLD: f64 = 0.02;
 
-/// What the vertex itself counts in its fit, as a share of what the centroid of a face does; a midpoint counts half.
+/// Weight of the vertex itself in its fit, against 1 for the centroid of a face and a half for a midpoint.
 const TIP: f64 = 0.3;
 
-/// The original surface, and how far the whole mesh was from it.
+/// The original surface, and the distance of the whole mesh from it.
 #[derive(Debug)]
 pub struct DistancePenalty<'a> {
     original: &'a TriangleTree,
@@ -47,7 +47,7 @@ impl<'a> DistancePenalty<'a> {
         Some(deviation)
     }
 
-    /// What a unit of volume between the surfaces weighs beside the image error `sum`, in its unit; 0 where the mesh lies
+    /// The price of a unit of volume between the surfaces, in the unit of the image error `sum`; 0 where the mesh lies
     /// in the original.
     #[must_use]
     pub fn price(&self, sum: f64) -> f64 {
@@ -77,7 +77,7 @@ impl<'a> DistancePenalty<'a> {
         cost as f64 * self.total + self.weight * sum * added
     }
 
-    /// How far the vertex of a star should move to be near the original with all of its faces: the least squares of the
+    /// The move of a star's vertex that brings it near the original with all of its faces: the least squares of the
     /// distances of the faces' samples from the planes that touch the original where it is nearest to them (Gauss and
     /// Newton's step). `None` where it has no faces with an area. O(faces log n).
     #[must_use]
@@ -93,7 +93,7 @@ impl<'a> DistancePenalty<'a> {
             if area <= 0.0 {
                 continue;
             }
-            // A sample, its share of the vertex's motion, and what it counts.
+            // A sample, its share of the vertex's motion, and its weight.
             let samples = [
                 (((tip + left) + right) / 3.0, 1.0 / 3.0, 1.0),
                 ((tip + left) * 0.5, 0.5, 0.5),

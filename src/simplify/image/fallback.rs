@@ -25,7 +25,7 @@ const PAYS: f64 = 0.97;
 /// rounding noise.
 const RESOLVED: f64 = 0.25;
 
-/// Up to this share of what the quick continuation leaves, the memoryless method itself is run: it can be better.
+/// Up to this share of the error that the quick continuation leaves, the memoryless method itself is run: it can be better.
 const PLAIN: f64 = 0.92;
 
 /// As [`RESOLVED`], for the quick continuation.

@@ -1,7 +1,7 @@
-//! Views that drive nothing: how much a result looks like the original where no picture was fitted.
+//! Views that drive nothing, to judge a result where no picture was fitted.
 //!
 //! The error of the driving pictures says nothing about quality, because the run has minimised it: where pictures cannot
-//! resolve what a mesh still has, ordering and polishing by them fit their noise. These views are between the driving
+//! resolve the details that a mesh still has, ordering and polishing by them fit their noise. These views are between the driving
 //! ones and have four times their pixels (at least [`LEAST`] along a side), with the same shading and 2 x 2 samples.
 
 use super::{ImageOptions, ReferenceImages, Size};
@@ -21,7 +21,7 @@ const VIEWS: u32 = 8;
 /// Smallest side in pixels: small pictures favour what was fitted to small pictures.
 const LEAST: u32 = 192;
 
-/// How the cameras are turned: as no polishing turns them.
+/// Round of the cameras: as no polishing turns them.
 const ROUND: u32 = 1_000;
 
 /// Pictures of the original in views that drive nothing.
@@ -55,7 +55,7 @@ impl HeldOutViews {
         Ok(Self { frame, reference })
     }
 
-    /// How far `result`, in file units, is from the original.
+    /// The error of `result`, in file units, against the original.
     ///
     /// # Errors
     /// [`crate::Error::Unsupported`] for more pixels than sums have bits for; never for views that could be drawn.

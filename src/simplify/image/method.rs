@@ -1,4 +1,4 @@
-//! The method: edges in the order of what their collapse does to the pictures.
+//! The method: edges in the order in which their collapse changes the pictures.
 
 use super::{
     super::memoryless::{self, MemorylessOptions},

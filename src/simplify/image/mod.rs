@@ -1,6 +1,6 @@
 //! Image-driven simplification: Lindstrom & Turk 2000, section 4.
 //!
-//! Edges collapse in the order of what their collapse does to the pictures: the cost is equation 8, the change of the
+//! Edges collapse in the order in which that changes the pictures: the cost is equation 8, the change of the
 //! sum of squared luma differences over all views, as an exact integer that may be negative and is not clamped. The new
 //! vertex is placed by the memoryless method (section 4.1), whose own cost is the second key: hidden edges all cost 0,
 //! and it keeps hidden parts in shape. But for the paper's preset, volume that a collapse sweeps is charged for as well:

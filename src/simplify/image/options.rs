@@ -18,7 +18,7 @@ use crate::{
 /// Most samples of all driving images together; every one takes some ten bytes throughout the run.
 const PIXEL_LIMIT: u64 = 1 << 27;
 
-/// Where the image-driven part of a run begins; the memoryless method gets there.
+/// The size at which the image-driven part of a run begins; the memoryless method gets there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
@@ -133,7 +133,7 @@ pub enum EngineName {
     Buckets,
 }
 
-/// What drives the collapses.
+/// Options of the image-driven method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct ImageOptions {
@@ -157,22 +157,22 @@ pub struct ImageOptions {
     pub interior_views: usize,
     /// Where the image-driven part begins.
     pub start: Start,
-    /// How pictures follow the mesh.
+    /// The engine by which pictures follow the mesh.
     pub engine: EngineName,
     /// Placement of the new vertex (section 4.1).
     pub placement: MemorylessOptions,
-    /// How much the share of the deviation from the original that the volume swept by a collapse makes weighs against
-    /// the share of the image error; 0 is the published method. See [`ImageDriven::with_swept_price`].
+    /// Weight of the distance from the original that the volume swept by a collapse makes, as a share of the whole,
+    /// against the share of the image error; 0 is the published method. See [`ImageDriven::with_swept_price`].
     ///
     /// [`ImageDriven::with_swept_price`]: super::ImageDriven::with_swept_price
     #[serde(default)]
     pub swept_weight: f64,
-    /// Edges wait under what one of every so many views says of them until they come to the front of the queue, and only there
-    /// are looked at in all views; 1 is the published method: all views at once, as where fewer than five views would be
-    /// seen. Even numbers see one half of mixed shading.
-    #[serde(default = "one")]
-    pub glance: u32,
-    /// What follows the last collapse.
+    /// Price edges by every n-th view until they come to the front of the queue, and only there by all views; 1 is the
+    /// published method: all views at once, as where fewer than five views would be left. Even numbers see one half of
+    /// mixed shading.
+    #[serde(default = "one", rename = "glance")]
+    pub view_stride: u32,
+    /// Moves and flips after the last collapse.
     #[serde(default)]
     pub polish: Polish,
     /// Return the memoryless method's result where it looks better in views that drove neither. Only where nothing but
@@ -196,9 +196,9 @@ impl ImageOptions {
                 "size is {size}; expected 1 to 4096 pixels"
             )));
         }
-        if self.glance == 0 {
+        if self.view_stride == 0 {
             return Err(Error::Usage(
-                "a glance at every 0th view; expected 1 or more".into(),
+                "glance is 0, every 0th view; expected 1 or more".into(),
             ));
         }
         if ![1, 2, 4].contains(&self.samples) {

@@ -1,4 +1,4 @@
-//! What a run that is driven by pictures asks of the original.
+//! The original as an image-driven run needs it: as pictures and as a surface.
 
 use super::{DistancePenalty, HeldOutViews, ImageOptions, ReferenceImages};
 use crate::{
@@ -64,18 +64,18 @@ impl OriginalModel {
         ReferenceImages::draw(&self.scene, set, progress)
     }
 
-    /// Its pictures in views that drive nothing, once: nothing else of the run looks at them.
+    /// Its pictures in views that drive nothing, once: no other part of the run needs them.
     pub fn take_held_out(&mut self) -> Option<HeldOutViews> {
         self.held_out.take()
     }
 
-    /// On which side of it a face is; `None` where it has no triangle with an area.
+    /// The sides of its surface; `None` where it has no triangle with an area.
     #[must_use]
     pub fn sides(&self) -> Option<&Orientation> {
         self.sides.as_ref()
     }
 
-    /// How far `live` is from its surface, as a share of the image error: see [`DistancePenalty::new`].
+    /// The penalty on distance from its surface for a run on `live`: see [`DistancePenalty::new`].
     #[must_use]
     pub fn deviation(&self, live: &LiveMesh, weight: f64) -> Option<DistancePenalty<'_>> {
         DistancePenalty::new(self.sides()?.surface(), live, weight)

@@ -1,4 +1,4 @@
-//! What pictures of a mesh are held against.
+//! Pictures of the original, which those of a mesh are compared with.
 
 use crate::{
     Error, Progress, Result, parallel,
@@ -29,7 +29,7 @@ impl ReferenceImages {
         Ok(Self { sums, set })
     }
 
-    /// The views, and what is common to their pictures.
+    /// The views and the format of their pictures.
     #[must_use]
     pub fn set(&self) -> &ViewSet {
         &self.set

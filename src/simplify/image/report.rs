@@ -36,7 +36,7 @@ impl Outcome {
         self.image()?.polish.as_ref()
     }
 
-    /// How the image-driven method compares with the memoryless one, where they were close.
+    /// The comparison with the memoryless method, where the two were close.
     #[must_use]
     pub fn comparison(&self) -> Option<Comparison> {
         self.image()?.comparison

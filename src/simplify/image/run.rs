@@ -79,7 +79,9 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     let sum = method.pictures().sum() as f64;
     let deviation = original.deviation(&run.live, own.swept_weight);
     let price = deviation.map_or(0.0, |d| d.price(sum));
-    let mut method = method.with_swept_price(price).with_view_stride(own.glance);
+    let mut method = method
+        .with_swept_price(price)
+        .with_view_stride(own.view_stride);
     let before = run.phase_start();
     let stop = run.phase("image", &mut method, run.least(), before)?;
     let mut pictures = method.into_pictures();

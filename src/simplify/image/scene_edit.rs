@@ -1,8 +1,8 @@
-//! From a patch of the mesh to a change of its pictures.
+//! The edit of the scene in the pictures that a patch of the mesh makes.
 //!
 //! The pictures number vertices and triangles without gaps, in the order of the mesh's own ids, so that ties of depth
 //! are decided the same way. With Gouraud shading a collapse changes the normals of the whole link, and with them the
-//! look of one more ring of triangles (Lindstrom & Turk 2000, footnote 3).
+//! shading of one more ring of triangles (Lindstrom & Turk 2000, footnote 3).
 
 use glam::DVec3;
 

@@ -19,17 +19,18 @@ use crate::{
     num::math,
 };
 
-/// How often the local bound doubles until it is the bound, in two steps each time: it starts at 1/32 of it.
+/// Number of doublings of the local bound, in two steps each: it starts at 1/32 of the bound.
 const DOUBLINGS: u32 = 5;
 /// Half-space tests of volumes: a share of the diagonal.
 const TOLERANCE: f64 = 1e-9;
-/// Bounds beyond so many diagonals mean the same.
+/// Bounds beyond this many diagonals mean the same.
 const FAR: f64 = 4.0;
-/// Faces around an edge of which so many are left that [`Coverage`] can tell them apart: two go, and count twice.
+/// Most faces around an edge that [`Coverage`] can tell apart when it has collapsed: two go, and count twice.
 const STAR_LIMIT: usize = Coverage::FACES + 4;
-/// Around an edge with more than so many faces, original triangles times faces that are looked at, at most: every
-/// collapse there changes so many stars. Collapses at the rim make such a hub smaller.
+/// Faces around an edge beyond which its work is limited: every collapse there changes that many stars. Collapses at
+/// the rim make such a hub smaller.
 const MANY: usize = 32;
+/// Most original triangles times faces of such an edge.
 const WORK: usize = 1 << 17;
 /// Edges that are evaluated together. Part of the result's making, not of the result.
 const AHEAD: usize = 32;
@@ -61,7 +62,7 @@ pub struct ToleranceMethod {
     options: ToleranceOptions,
     memoryless: Memoryless,
     surface: OriginalSurface,
-    /// What the original's triangles are near to; `None` where only the other direction counts.
+    /// The faces near every triangle of the original; `None` where only the other direction counts.
     coverage: Option<Coverage>,
     diagonal: f64,
     reach: Reach,
@@ -127,7 +128,7 @@ impl ToleranceMethod {
         })
     }
 
-    /// What holds for the mesh at any time.
+    /// The bound that holds for the mesh at any time.
     #[must_use]
     pub fn guarantee(&self) -> Guarantee {
         self.guarantee
@@ -274,7 +275,7 @@ impl Method for ToleranceMethod {
         if let Some(fixed) = site.fixed() {
             return attempt(fixed, &mut around, scratch);
         }
-        // What is told of a refused edge is the last test that any place came to.
+        // The reason of a refused edge is the last test that any place came to.
         let mut refusal = Refusal::Unplaced;
         if let Some(optimum) = objective.place().position {
             match attempt(optimum, &mut around, scratch) {

@@ -27,7 +27,7 @@ pub struct ViewBounded {
     placement: MemorylessOptions,
     limit: AngleLimit,
     map: Correspondence,
-    /// What the map's positions are relative to, in frame units.
+    /// Origin of the map's positions, in frame units.
     origin: DVec3,
     scratch: Buffers,
     /// A collapse was committed without a map: the account is worthless.

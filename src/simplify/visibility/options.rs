@@ -16,7 +16,7 @@ pub struct VisibilityOptions {
     pub quadric: QuadricOptions,
     /// Weight of the cost without visibility beside the cost with it, in [0, 1].
     pub tie_weight: f64,
-    /// How the visibility of the input's triangles is measured, or was.
+    /// Measurement of the visibility of the input's triangles.
     pub measure: visibility::MeasureOptions,
 }
 

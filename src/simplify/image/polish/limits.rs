@@ -9,7 +9,7 @@ use crate::{
 /// Limits of polishing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Limits<'a> {
-    /// As for collapses.
+    /// The rules, as for collapses.
     pub rules: Rules,
     /// Penalty on distance from the original.
     pub deviation: Option<&'a DistancePenalty<'a>>,

@@ -1,4 +1,4 @@
-//! Where a vertex should go: a search along its normal and two tangents, judged by the pictures, and where it would be
+//! The search for a better place of a vertex: along its normal and two tangents, judged by the pictures, and where it would be
 //! near the original with all of its faces.
 
 use glam::DVec3;
