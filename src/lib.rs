@@ -6,12 +6,27 @@
 //! right.
 //!
 //! ```
-//! use lodmark::{Silent, mesh, simplify};
+//! use lodmark::{Mesh, Options, Preset, Target, compare, simplify};
 //!
-//! let mesh = mesh::canonical(&mesh::generate::icosphere(3)).mesh;
-//! let options = simplify::Options::image(simplify::Target::Triangles(200));
-//! let outcome = simplify::simplify(&mesh, &options)?;
-//! assert_eq!(outcome.mesh.triangles().len(), 200);
+//! # fn run(path: &std::path::Path) -> Result<(), lodmark::Error> {
+//! # let corners: Vec<f32> = (0..289).flat_map(|i| [(i % 17) as f32, (i / 17) as f32, ((i * i) % 7) as f32]).collect();
+//! # let quad = |i: u32| [i, i + 1, i + 17, i + 1, i + 18, i + 17];
+//! # let faces: Vec<u32> = (0..272).filter(|i| i % 17 < 16).flat_map(quad).collect();
+//! # Mesh::from_slices(&corners, &faces)?.write(path.join("bunny.ply"))?;
+//! # std::env::set_current_dir(path).expect("a folder");
+//! let mesh = Mesh::read("bunny.ply")?; // welded, in canonical order
+//! let options = Options::image(Target::ratio(0.5)).preset(Preset::Fast);
+//! let outcome = simplify(&mesh, &options)?; // simplify_with(.., &progress) to watch or stop it
+//! println!("{} of {} triangles", outcome.mesh.triangles().len(), mesh.triangles().len());
+//! let report = compare(&mesh, &outcome.mesh)?;
+//! println!("largest distance {:?}", report.errors.distances.distance_max);
+//! outcome.mesh.write("bunny.lod.ply")?;
+//! # Ok(())
+//! # }
+//! # let folder = std::env::temp_dir().join(format!("lodmark-doc-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder).expect("a folder");
+//! # run(&folder)?;
+//! # std::fs::remove_dir_all(&folder).expect("a folder");
 //! # Ok::<(), lodmark::Error>(())
 //! ```
 //!
@@ -33,37 +48,59 @@
 //! - Incremental equals from scratch: maintained pictures are those of a fresh rendering, the maintained error is the
 //!   recomputed one, and the cost of a freshly evaluated edge is the error after minus the error before. Exactly.
 //!
+//! # Without the command
+//!
+//! The default feature `cli` builds the command and brings what only it needs: a library asks for
+//! `default-features = false`.
+//!
 //! # Architecture
 //!
-//! Data flows one way; an import only points to the left, and a test holds the table of allowed imports.
+//! Everything behind the names on this page is free to change; tests of this crate open it by the feature `internals`,
+//! for which no promise holds. Data flows one way, and a test holds the table of allowed imports.
 //!
 //! ```text
-//! error, num -> geometry -> mesh -> io            encode: low, used by all
+//! error, num -> geometry -> mesh -> io            encode (png, npy, json, hash): low, used by all
 //!                            |
-//!                            +-> view -> raster -> metric --+     pictures
-//!                            |             +-> visibility --+
-//!                            +-> bound ---------------------+
-//!                            +-> collapse ------------------+-> simplify -> selfcheck -> cli
+//!                            +-> view -> raster -> metric ------+
+//!                            |             +----> visibility ---+     pictures
+//!                            +-> bound  (view cells, envelopes)-+
+//!                            +-> collapse ----------------------+-> simplify -> selfcheck, front -> cli
 //! ```
 //!
-//! | module | owns |
+//! | room | owns |
 //! |---|---|
 //! | `num` | where a float becomes fixed point, the only callers of sqrt and libm, the scaled frame |
-//! | `geometry` | symmetric 3x3 matrices, boxes, triangles, the one tree over triangles |
+//! | `parallel` | work on all threads in the order of a list; the only caller of rayon |
+//! | `geometry` | symmetric 3x3, triangles, boxes, the one tree over triangles: what bound, metric and simplify share |
+//! | `encode` | PNG, npy, JSON, hashes of pixels, contact sheets; whole files or none |
 //! | `mesh` | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
 //! | `io` | OBJ, PLY and STL, in and out; hostile input ends here |
 //! | `view` | cameras, the minimum bounding sphere, view sets and view files |
-//! | `raster` | clip, snap, spans, depth, ids, shading; un-rendering |
-//! | `metric` | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference |
-//! | `visibility` | what cameras all around see of every triangle: V(t), V(M), partial surveys, hidden parts; the proof of ID buffers by ray casting |
-//! | `bound` | what is guaranteed: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
-//! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay |
-//! | `simplify` | the methods, their options and outcomes |
-//! | `encode` | PNG, npy, JSON, hashes of pixels, contact sheets; whole files or none |
+//! | `raster` | `draw`: clip, snap, spans, depth, ids, shading; `unrender/buckets` and `unrender/layers`, two engines with the same bits |
+//! | `metric` | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference; the report of candidates against a reference |
+//! | `visibility` | ID buffers of cameras all around: V(t), V(M), partial counts, hidden parts; the proof of ID buffers by ray casting |
+//! | `bound` | guarantees: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
+//! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay; no word about pictures |
+//! | `simplify` | one folder a method: options, run, report; targets and outcome |
 //! | `selfcheck` | goldens: what this version computes for a fixed set of small cases |
+//! | `front` | the functions of this page that no room has in that form |
+//! | `cli` | the command, one file or folder a subcommand |
 //!
 //! Two seams carry later work: a `collapse::Method` proposes a position and a key for a site and hears of commits;
 //! `raster::Unrender` engines take a change, not a collapse.
+//!
+//! ## The way of an edge from the queue to its commit
+//!
+//! 1. `collapse/engine`: the edge with the smallest key stands at the front of the queue.
+//! 2. Where its key is not exact, `engine/evaluator` gathers its edge star from the lists of the live mesh.
+//! 3. `collapse/legality` says where the rules allow the new vertex at all.
+//! 4. The method places it (`simplify/memoryless`), `collapse/fold` tests the shapes, and the method prices the
+//!    collapse: the image-driven one turns the patch into a scene edit and asks `raster/unrender` for the difference of
+//!    every view. The edge goes back to the queue under the exact key.
+//! 5. At the front again, the star becomes the patch that is committed: faces that go, faces that come, wedges.
+//! 6. The method reviews it; `collapse/live` changes the lists.
+//! 7. The method and the observers hear of it: pictures follow, the history keeps a record.
+//! 8. The engine re-keys the edges around the new vertex.
 //!
 //! # Refusals
 //!
@@ -150,6 +187,9 @@ pub use front::{
 pub use mesh::{Attributes, Channel, ChannelKind, Materials, Mesh, MeshParts};
 pub use num::Precision;
 pub use progress::{Progress, Silent};
+pub use simplify::{
+    History, Options, Outcome, Stop, Target, image::Preset, simplify, simplify_with,
+};
 
 /// The whole command: reads the arguments of the process and runs them.
 #[cfg(feature = "cli")]

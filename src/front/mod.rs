@@ -4,6 +4,7 @@
 //! change.
 
 mod compare;
+mod history;
 mod render;
 pub mod verify;
 mod visibility;
@@ -16,6 +17,15 @@ pub use visibility::{visibility, visibility_with};
 pub mod options {
     pub use super::render::RenderOptions;
     pub use crate::metric::report::CompareOptions;
+    pub use crate::simplify::{
+        MethodOptions, Rules, Schedule, Topology,
+        image::{DrivingShading, EngineName, ImageOptions, Polish, Size, Start},
+        memoryless::{ConstraintOrder, MemorylessOptions, Objective, Placement},
+        quadric::{QuadricOptions, Uncertainty, Weighting},
+        tolerance::{Distance, ToleranceOptions},
+        view_bounded::ViewBoundedOptions,
+        visibility::VisibilityOptions,
+    };
     pub use crate::visibility::{Alignment, CameraWeights, MeasureOptions, UnseenRule};
 }
 
@@ -23,6 +33,7 @@ pub mod options {
 pub mod reports {
     pub use super::render::{Rendering, ViewImages};
     pub use crate::{
+        collapse::{Counters, Reason, Refusals},
         metric::{
             appearance::WorstView,
             folds::Folds,
@@ -35,6 +46,13 @@ pub mod reports {
             surface::{Distances, OneSided, SurfaceDistance},
         },
         num::Grid,
+        simplify::{
+            Phase, Report,
+            image::{Comparison as Fallback, ImageReport, PolishCounters},
+            tolerance::Guarantee,
+            view_bounded::ViewBoundedReport,
+            visibility::VisibilityReport,
+        },
         visibility::Visibility,
     };
 }

@@ -87,6 +87,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "metric",
             "visibility",
             "bound",
+            "collapse",
+            "simplify",
         ],
     ),
     (

@@ -1,0 +1,21 @@
+//! Any level of a recorded run.
+
+use crate::{
+    Result,
+    collapse::{History, Replay},
+    mesh::Mesh,
+};
+
+impl History {
+    /// Rebuilds the mesh at the level of at most `triangles` triangles from the mesh that the run began with.
+    ///
+    /// The same bytes as a run that stopped there, but for what follows the last collapse. O(collapses).
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) where the history belongs to another mesh.
+    pub fn level(&self, original: &Mesh, triangles: usize) -> Result<Mesh> {
+        let mut replay = Replay::new(original, self)?;
+        replay.seek(triangles)?;
+        replay.live().to_mesh()
+    }
+}
