@@ -2,7 +2,8 @@
 //!
 //! **The answer does not depend on the tree.** It is the minimum, over *all* triangles, of the squared distance as
 //! [`TreeItem::squared_distance`] computes it: rounded, but a function of point and triangle alone. A box is skipped
-//! only where its squared distance is not below the best so far, and a box distance never exceeds the computed distance of a
+//! only where its squared distance is not below the best so far, and a box distance never exceeds the computed distance
+//! of a
 //! [`Triangle`] inside: the closest point is clamped to the triangle's box, rounded subtraction, squaring and addition
 //! are monotonic, and both distances are summed in the same order. So neither the split rule nor the starting bound
 //! nor the order of the search can change a bit.

@@ -120,8 +120,8 @@ impl Orientation {
         &self.surface
     }
 
-    /// True where some surface within reach looks as a face does, which is then not flipped; any part of the reference can
-    /// say so.
+    /// True where some surface within reach looks as a face does, which is then not flipped; any part of the reference
+    /// can say so.
     #[must_use]
     pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let centroid = ((a + b) + c) / 3.0;

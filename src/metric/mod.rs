@@ -4,7 +4,8 @@
 //! [`luma`] is what simplification minimises: the exact squared difference of luma images (Lindstrom & Turk 2000,
 //! equations 1 and 2). [`surface`] is the classical geometric distance, measured as Metro does. [`silhouette`]
 //! explains why images keep shape: it counts in how many views an edge lies on the silhouette (Figure 7).
-//! [`folds`] counts what pictures may hide. [`difference`] says whether two images are equal, and where and how much they are not.
+//! [`folds`] counts what pictures may hide. [`difference`] says whether two images are equal, and where and how much
+//! they are not.
 
 pub mod appearance;
 pub mod difference;

@@ -1,16 +1,16 @@
 //! A limit on the angle between a piece of surface and what stands for it, for an observer anywhere in a view cell.
 //!
 //! First by distance (notes, 4.7): what lies within `d sin T` of a point at the distance `d` subtends at most `T`. Where
-//! that fails, by direction, which allows much more along the lines of sight: for points `P` of a piece, displacements `D`
-//! and viewpoints `V`, the tangent of the angle is `|D x (P - V)| / ((P - V) . (P + D - V))`. Over a piece and a convex
-//! part of the cell the numerator is at most that for the piece's centre, which is bilinear in piece and part and so
-//! largest at corners, plus `|D|` times the piece's radius; the denominator is at least the product of the least depths
-//! of both pieces along one direction less half the square of `D` across it. So a part is decided by corners alone, and
-//! halved where that does not decide it: an angle that is too large at a corner refuses at once. The angle of a pair of
-//! points takes its maximum over a polyhedron on its faces, as the set of viewpoints with a larger angle is connected
-//! and contains the points themselves, which are outside (the distance is not 0).
-//! Units: any in which surface and cell are near the origin, compared with their sizes. Rounding: a ten-millionth of a limit
-//! is given away for it, and of lengths the 10^13th part of the largest coordinate.
+//! that fails, by direction, which allows much more along the lines of sight: for points `P` of a piece, displacements
+//! `D` and viewpoints `V`, the tangent of the angle is `|D x (P - V)| / ((P - V) . (P + D - V))`. Over a piece and a
+//! convex part of the cell the numerator is at most that for the piece's centre, which is bilinear in piece and part
+//! and so largest at corners, plus `|D|` times the piece's radius; the denominator is at least the product of the least
+//! depths of both pieces along one direction less half the square of `D` across it. So a part is decided by corners
+//! alone, and halved where that does not decide it: an angle that is too large at a corner refuses at once. The angle
+//! of a pair of points takes its maximum over a polyhedron on its faces, as the set of viewpoints with a larger angle
+//! is connected and contains the points themselves, which are outside (the distance is not 0).
+//! Units: any in which surface and cell are near the origin, compared with their sizes. Rounding: a ten-millionth of a
+//! limit is given away for it, and of lengths the 10^13th part of the largest coordinate.
 
 use glam::DVec3;
 

@@ -1,14 +1,14 @@
 //! A correspondence as bytes, for programs that check it or carry textures over: `lodmark simplify --method view-bounded
 //! --bound-out FILE` writes it, `lodmark verify --bound FILE` and `lodmark bound --correspondence FILE` read it.
 //!
-//! Little-endian: magic `LODMCORR`, format version (u32, 1), SHA-256 of the original and of the simplified surface, number
-//! of triangles of both (u32 each), number of pieces (u64); then for every original triangle, in order, the number of its
-//! pieces (u32) and the pieces: triangle of the simplified mesh (u32), number of corners (u32, at least 3), and per corner
-//! four u32 in units of 2^-31: the weights of the second and third corner of the original triangle, and of the simplified
-//! one. At the end is the SHA-256 of all that. A piece is mapped linearly on the triangles from its first corner. The
-//! digest of a surface is that of the coordinates of all corners of its triangles, in order, as doubles: the same for a
-//! mesh and any file of it. The original is the mesh in canonical order, as `simplify` works on it; the simplified one has
-//! the order of its file.
+//! Little-endian: magic `LODMCORR`, format version (u32, 1), SHA-256 of the original and of the simplified surface,
+//! number of triangles of both (u32 each), number of pieces (u64); then for every original triangle, in order, the
+//! number of its pieces (u32) and the pieces: triangle of the simplified mesh (u32), number of corners (u32, at least
+//! 3), and per corner four u32 in units of 2^-31: the weights of the second and third corner of the original triangle,
+//! and of the simplified one. At the end is the SHA-256 of all that. A piece is mapped linearly on the triangles from
+//! its first corner. The digest of a surface is that of the coordinates of all corners of its triangles, in order, as
+//! doubles: the same for a mesh and any file of it. The original is the mesh in canonical order, as `simplify` works on
+//! it; the simplified one has the order of its file.
 
 use std::io::{Result, Write};
 

@@ -18,7 +18,8 @@ pub struct Corner {
 pub struct Piece<'a> {
     /// The original triangle.
     pub triangle: u32,
-    /// A polygon, counter-clockwise in the triangle up to rounding; mapped linearly on the triangles from its first corner.
+    /// A polygon, counter-clockwise in the triangle up to rounding; mapped linearly on the triangles from its first
+    /// corner.
     pub corners: &'a [Corner],
 }
 

@@ -1,20 +1,20 @@
 //! The map from the surface as it was to the surface as it is: every original triangle in convex pieces, each mapped by
 //! one affine map into one live face.
 //!
-//! A collapse puts together what a triangle has in the faces before (in the plane of their [`Layout`]), as far as its outline,
-//! and cuts that along the faces after. Displacement is a convex function on a piece, so it is largest at a corner:
-//! nothing is added up over collapses, and a surface that returns to where it was is as good as one that never moved. The
-//! notes (4.9) propose a number per face that adds up the steps instead, and that cuts are kept for ever; here no more is
-//! kept of old faces, whose sides would cut every triangle into ever smaller pieces: between the corners that are left the
-//! map is a new one, and is judged as such.
+//! A collapse puts together what a triangle has in the faces before (in the plane of their [`Layout`]), as far as its
+//! outline, and cuts that along the faces after. Displacement is a convex function on a piece, so it is largest at a
+//! corner: nothing is added up over collapses, and a surface that returns to where it was is as good as one that never
+//! moved. The notes (4.9) propose a number per face that adds up the steps instead, and that cuts are kept for ever;
+//! here no more is kept of old faces, whose sides would cut every triangle into ever smaller pieces: between the
+//! corners that are left the map is a new one, and is judged as such.
 //! Weights are in units of 2^-31, and judged as kept. Pieces fit together exactly: every side of one is, bit for bit in
 //! weights of the original triangle, a side of another one in the opposite direction, or lies on a side of the triangle,
 //! and those together make up that side. So every point of the triangle lies in a piece, in a triangle from its first
-//! corner, whatever rounding did to the corners: the winding numbers of all pieces add up to that of the triangle. It lies
-//! in no more than one up to rounding, as those triangles all lie the right way up. Target weights are in their faces.
-//! Triangles that share a side map it to the same points, up to rounding, as far as tests find with displacements of up
-//! to a third of a side; of surfaces that are pushed together farther than that no more is promised than the limit.
-//! Memory: 16 bytes per corner of a piece.
+//! corner, whatever rounding did to the corners: the winding numbers of all pieces add up to that of the triangle. It
+//! lies in no more than one up to rounding, as those triangles all lie the right way up. Target weights are in their
+//! faces. Triangles that share a side map it to the same points, up to rounding, as far as tests find with
+//! displacements of up to a third of a side; of surfaces that are pushed together farther than that no more is promised
+//! than the limit. Memory: 16 bytes per corner of a piece.
 
 use glam::DVec3;
 

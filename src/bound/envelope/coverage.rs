@@ -2,8 +2,8 @@
 //!
 //! Every triangle of the original has witnesses: live faces such that each of its points is within reach of one of them.
 //! A change of the mesh takes faces away; only the triangles that have one of those as a witness must be looked at again,
-//! against the faces that come and the witnesses that stay. As in [`OriginalSurface`](super::OriginalSurface), a piece whose three
-//! corners are within reach of the same face is near as a whole, others are halved until they are small.
+//! against the faces that come and the witnesses that stay. As in [`OriginalSurface`](super::OriginalSurface), a piece
+//! whose three corners are within reach of the same face is near as a whole, others are halved until they are small.
 //!
 //! For every corner the faces within reach are bits of a mask, so that a triangle is settled by `and`. Limits: 128 faces
 //! around a change; beyond that the answer is no.

@@ -108,8 +108,9 @@ impl Facet {
         best
     }
 
-    /// Cuts a triangle at the wall on one of the edges, along the normal: where a large part of it is outside of the edge,
-    /// by more than `reach`, and another part inside. The inner part can be settled by this facet alone, whatever its size.
+    /// Cuts a triangle at the wall on one of the edges, along the normal: where a large part of it is outside of the
+    /// edge, by more than `reach`, and another part inside. The inner part can be settled by this facet alone, whatever
+    /// its size.
     /// `None` for a sliver, and where the facet is not larger than `reach`: halving is better there.
     pub(super) fn cut(&self, piece: [DVec3; 3], reach: f64) -> Option<Cut> {
         let [ab, ac] = self.sides;

@@ -152,8 +152,8 @@ impl Projection {
         }
     }
 
-    /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: judged from
-    /// the ends of the cell, or for a cell without an end, at a fraction of the cost.
+    /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: judged
+    /// from the ends of the cell, or for a cell without an end, at a fraction of the cost.
     #[inline]
     #[must_use]
     pub fn may_reach(&self, p: DVec2, offsets: Interval) -> bool {

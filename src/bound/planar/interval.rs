@@ -63,7 +63,8 @@ pub struct Disc {
 pub(super) struct Bounds(pub(super) Interval);
 
 impl Bounds {
-    /// Narrows the interval to the lines that a point of the face at offset `rho`, `sight` away from a viewpoint, may reach.
+    /// Narrows the interval to the lines that a point of the face at offset `rho`, `sight` away from a viewpoint, may
+    /// reach.
     #[inline(always)]
     pub(super) fn narrow(&mut self, sight: DVec2, rho: f64, sin: f64, cos: f64) {
         let squared = sight.x * sight.x + sight.y * sight.y;

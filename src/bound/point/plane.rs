@@ -47,7 +47,8 @@ impl Section {
     }
 }
 
-/// The viewpoints of a plane (a point, a unit normal) that may limit the extent of `point` along the unit vector `direction` most.
+/// The viewpoints of a plane (a point, a unit normal) that may limit the extent of `point` along the unit vector
+/// `direction` most.
 pub(super) fn max_viewpoints(
     [origin, normal]: [DVec3; 2],
     point: DVec3,
@@ -62,8 +63,8 @@ pub(super) fn max_viewpoints(
     })
 }
 
-/// The viewpoints of a plane (a point, a unit normal) that may see two points farthest apart; none where the points are not strictly on one
-/// side of it: then the border of a polygon decides, or the segment between them meets it.
+/// The viewpoints of a plane (a point, a unit normal) that may see two points farthest apart; none where the points are
+/// not strictly on one side of it: then the border of a polygon decides, or the segment between them meets it.
 pub(super) fn worst_viewpoints(
     [origin, normal]: [DVec3; 2],
     point: DVec3,

@@ -117,8 +117,8 @@ impl Polyhedron {
         (sides.len() >= 4).then_some(Self { sides })
     }
 
-    /// Puts what is left of it outside the intersection of half-spaces into `into`: disjoint cells, or itself where there is
-    /// nothing of it inside. Parts of no more volume than `least` are dropped.
+    /// Puts what is left of it outside the intersection of half-spaces into `into`: disjoint cells, or itself where
+    /// there is nothing of it inside. Parts of no more volume than `least` are dropped.
     pub fn outside(self, of: &[HalfSpace], tolerance: f64, least: f64, into: &mut Vec<Self>) {
         let start = into.len();
         let mut rest = self.clone();

@@ -1,7 +1,7 @@
 //! A triangle thickened along its normal (section 2).
 //!
-//! The walls stand on the edges, along the normal; the caps are the triangle moved up and down by the bound. The column is
-//! the prism without its caps.
+//! The walls stand on the edges, along the normal; the caps are the triangle moved up and down by the bound. The column
+//! is the prism without its caps.
 
 use glam::DVec3;
 

@@ -1,10 +1,11 @@
 //! The shadow of a cap: where a new vertex would make a face pierce the cap (section 2.1).
 //!
-//! A new triangle stands on a source, an edge of the link (or, in the paper, a vertex of it). It pierces the cap where the
-//! new vertex lies behind the cap as seen from a point of the source. Those places are convex: `cap + cone(cap - source)`.
-//! The bounding planes are the cap's own and every plane through an edge of the cap and an end of the source, or through
-//! the source and a corner of the cap, that has the whole cap on one side and the whole source on the other. Deviation:
-//! the paper's sets start from vertices; a face can pierce a cap between two vertices, so edges are the default.
+//! A new triangle stands on a source, an edge of the link (or, in the paper, a vertex of it). It pierces the cap where
+//! the new vertex lies behind the cap as seen from a point of the source. Those places are convex: `cap + cone(cap -
+//! source)`. The bounding planes are the cap's own and every plane through an edge of the cap and an end of the source,
+//! or through the source and a corner of the cap, that has the whole cap on one side and the whole source on the other.
+//! Deviation: the paper's sets start from vertices; a face can pierce a cap between two vertices, so edges are the
+//! default.
 
 use glam::DVec3;
 

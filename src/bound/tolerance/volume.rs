@@ -32,7 +32,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// The volume for a bound; empty where nothing is allowed. `tolerance`: length below which points count as on a plane.
+    /// The volume for a bound; empty where nothing is allowed. `tolerance`: length below which points count as on a
+    /// plane.
     ///
     /// O(cells * faces * link edges).
     #[must_use]

@@ -1,15 +1,16 @@
-//! Checks the claim that no viewer in a cell sees a point of the original and what stands for it under more than an angle.
+//! Checks the claim that no viewer in a cell sees a point of the original and what stands for it under more than an
+//! angle.
 //!
 //! Replacements are read from a [`Record`], and three things are checked: that the pieces of every original
 //! triangle leave nothing of it out, in whole numbers; for every piece the largest angle for all its points and all
 //! viewpoints, from below and above, as near as it takes to know the largest one of all to a five-hundredth and
-//! whether it is above the claim; and, as a check of that, the angle at points spread over the original, from every corner
-//! of the cell and from viewpoints all over it.
+//! whether it is above the claim; and, as a check of that, the angle at points spread over the original, from every
+//! corner of the cell and from viewpoints all over it.
 //! Without a record only a weaker property can be checked: that every original point has *some* point of the simplified
 //! surface within the angle ([`Property::NearestInAngle`]). Endless cells are looked from within at least four sizes of
-//! the original around the foot of its centre; beyond, displacements are bounded by their lengths. An angle breaks a claim
-//! where it is larger by a hundred-millionth or 1e-10 radians. Meshes that are far from the origin for their size are seen
-//! from nearby, so that this is above rounding for them too. The same result for any number of threads.
+//! the original around the foot of its centre; beyond, displacements are bounded by their lengths. An angle breaks a
+//! claim where it is larger by a hundred-millionth or 1e-10 radians. Meshes that are far from the origin for their size
+//! are seen from nearby, so that this is above rounding for them too. The same result for any number of threads.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -85,8 +86,8 @@ pub struct AngleReport {
     pub pieces: Option<usize>,
     /// The first original triangle that its pieces do not cover, and why.
     pub gap: Option<(u32, Gap)>,
-    /// No viewer sees any point and what stands for it under more than this many degrees: proven. `None` without a record,
-    /// and where no angle below 90 degrees is.
+    /// No viewer sees any point and what stands for it under more than this many degrees: proven. `None` without a
+    /// record, and where no angle below 90 degrees is.
     pub at_most_deg: Option<f64>,
     /// The share of the area for which the claim is not proven, in [0, 1]; 1 without a record.
     pub undecided_area: f64,
@@ -98,8 +99,8 @@ pub struct AngleReport {
     pub proven: bool,
 }
 
-/// Holds a simplified mesh to a claimed angle (degrees) for the viewers in `cell`, with about `samples` points spread over
-/// the original, which is in canonical order where there is a record.
+/// Holds a simplified mesh to a claimed angle (degrees) for the viewers in `cell`, with about `samples` points spread
+/// over the original, which is in canonical order where there is a record.
 ///
 /// # Errors
 /// [`Error::Usage`] for an angle outside [0, 90); [`Error::Input`] where a mesh has no triangles or the record is not

@@ -1,5 +1,5 @@
-//! Contact of a view cell with a surface: a viewer who stands on a point of it sees that point in every direction, so that
-//! the angle to its replacement may be any up to pi.
+//! Contact of a view cell with a surface: a viewer who stands on a point of it sees that point in every direction, so
+//! that the angle to its replacement may be any up to pi.
 
 use glam::DVec3;
 

@@ -2,17 +2,17 @@
 //!
 //! By samples: points spread over each surface, along its edges, and its vertices, each with its distance to the other
 //! surface. And by proof: every triangle is cut until it is certain that it lies within the distance, or a point of it
-//! does not ([`super::distance_bound`]). A claim is broken only by a point that was measured; where neither holds, the report
-//! says what part of the surface is undecided, and the distance that is proven. Distances are Euclidean, computed in a
-//! frame scaled to the reference; a measured distance breaks a claim where it is larger by a billionth and by 2e-10 of the
-//! reference's diagonal, far above rounding. The same result for any number of threads.
+//! does not ([`super::distance_bound`]). A claim is broken only by a point that was measured; where neither holds, the
+//! report says what part of the surface is undecided, and the distance that is proven. Distances are Euclidean,
+//! computed in a frame scaled to the reference; a measured distance breaks a claim where it is larger by a billionth
+//! and by 2e-10 of the reference's diagonal, far above rounding. The same result for any number of threads.
 
 use glam::DVec3;
 use serde::Serialize;
 
 use super::{
     distance_bound,
-    nearest::Facets,
+    nearest::{Facets, double_area},
     samples::{Sample, Samples},
 };
 use crate::{
@@ -230,7 +230,7 @@ impl DistanceCheck<'_> {
         let plan = Samples::new(&self.from.corners, samples);
         let violations = self.sample(name, &plan, &mut worst, progress)?;
         let (at_most, undecided) = self.prove(name, &mut worst, progress)?;
-        let total: f64 = self.from.corners.iter().map(double_area).sum();
+        let total: f64 = self.from.corners.iter().copied().map(double_area).sum();
         let farthest = sqrt(worst.squared);
         let share = if total > 0.0 { undecided / total } else { 0.0 };
         Ok(Direction {
@@ -337,8 +337,4 @@ impl DistanceCheck<'_> {
         }
         Ok((at_most, undecided))
     }
-}
-
-fn double_area([a, b, c]: &[DVec3; 3]) -> f64 {
-    length((*b - *a).cross(*c - *a))
 }

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::nearest::Facets;
+use super::nearest::{Facets, double_area};
 use crate::num::math::{length, sqrt};
 
 /// Limits of a round of cuts of one triangle.
@@ -72,9 +72,9 @@ pub(super) fn settle(
         }
         open.append(&mut left);
     }
-    for ([a, b, c], bound) in open.into_iter().chain(left) {
+    for (part, bound) in open.into_iter().chain(left) {
         finding.at_most = finding.at_most.max(bound);
-        finding.undecided += length((b - a).cross(c - a));
+        finding.undecided += double_area(part);
     }
     finding
 }

@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::viewpoints::{angle, tangent2};
-use crate::num::math::{atan2, sqrt};
+use crate::num::math::{atan2, length, sqrt};
 
 /// Facets in a leaf.
 const LEAF: usize = 4;
@@ -105,6 +105,11 @@ impl Facet {
         }
         to_side(p, a, b).min(to_side(p, b, c)).min(to_side(p, c, a))
     }
+}
+
+/// Twice the area of a triangle.
+pub(super) fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
+    length((b - a).cross(c - a))
 }
 
 /// Squared distance from `p` to a segment.

@@ -11,6 +11,7 @@ use super::{
     angle_bound::{Wanted, first, refine},
     angle_tally::{AngleTally, FrameSighting},
     gaps::{self, Gap},
+    nearest::double_area,
     record::{ONE, Record},
 };
 use crate::{Progress, Result, num::math::length, parallel};
@@ -199,8 +200,4 @@ impl AngleCheck<'_> {
             ]
         }));
     }
-}
-
-fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
-    length((b - a).cross(c - a))
 }

@@ -35,8 +35,8 @@ impl Record {
     /// Reads a file's bytes; `path` is for messages. Memory is at most a small multiple of `bytes`.
     ///
     /// # Errors
-    /// [`Error::Input`] where the bytes are no such file, cut short, damaged or out of range; [`Error::Unsupported`] where
-    /// a newer version wrote them.
+    /// [`Error::Input`] where the bytes are no such file, cut short, damaged or out of range; [`Error::Unsupported`]
+    /// where a newer version wrote them.
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bad = |what: &str| Error::input(path, what.to_string());

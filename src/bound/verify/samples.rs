@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::nearest::double_area;
 use crate::num::math::length;
 
 /// 2^64 / g and 2^64 / g^2, g = 1.3247179...
@@ -48,7 +49,7 @@ impl Samples {
         let (mut areas, mut sides) = (Vec::new(), Vec::new());
         let (mut area, mut side) = (0.0, 0.0);
         for &[a, b, c] in corners {
-            area += length((b - a).cross(c - a));
+            area += double_area([a, b, c]);
             areas.push(area);
             side += length(b - a) + length(c - b) + length(a - c);
             sides.push(side);

@@ -7,8 +7,8 @@ use crate::{
     num::math::{atan2, length},
 };
 
-/// Half the side of the part of an endless cell that viewpoints are taken from, in sizes of the original, and in sizes and
-/// distances together: displacements of some size are seen larger from there than from anywhere beyond.
+/// Half the side of the part of an endless cell that viewpoints are taken from, in sizes of the original, and in sizes
+/// and distances together: displacements of some size are seen larger from there than from anywhere beyond.
 const REACH: [f64; 2] = [4.0, 3.0];
 
 /// The square of the tangent of the angle between `p` and `s` seen from `v`; infinite from a right angle on, and where
@@ -133,9 +133,9 @@ impl Viewpoints {
         }
     }
 
-    /// No viewpoint that is left out sees one of `points` and what stands for it, at most `moved` away, under an angle with
-    /// a larger tangent. All others that are not in [`Self::parts`] are inside a half-space, and see no more than those
-    /// as long as the points are outside of it: the viewpoints that see more are connected with the points.
+    /// No viewpoint that is left out sees one of `points` and what stands for it, at most `moved` away, under an angle
+    /// with a larger tangent. All others that are not in [`Self::parts`] are inside a half-space, and see no more than
+    /// those as long as the points are outside of it: the viewpoints that see more are connected with the points.
     pub(super) fn beyond(&self, points: impl Iterator<Item = DVec3> + Clone, moved: f64) -> f64 {
         if moved <= 0.0 {
             return 0.0;

@@ -214,7 +214,8 @@ impl Scene<'_> {
         levels.into_iter().filter_map(quad).collect()
     }
 
-    /// The rectangle of what a plane through `origin` replaces, projected `along` a direction; `None` where it has no area.
+    /// The rectangle of what a plane through `origin` replaces, projected `along` a direction; `None` where it has no
+    /// area.
     fn framed(
         &self,
         origin: DVec3,

@@ -50,7 +50,8 @@ impl Quad {
     }
 
     /// Draws its texture, seen along the direction of projection with a light at the viewer, as every picture of this
-    /// crate; nothing is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels + drawn).
+    /// crate; nothing is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels +
+    /// drawn).
     #[must_use]
     pub fn texture(&self, mesh: &Mesh) -> Texture {
         let picture = self.picture(mesh);
@@ -166,7 +167,8 @@ fn colors(mesh: &Mesh, triangles: &[u32]) -> Vec<[[f64; 3]; 3]> {
     triangles.iter().map(of).collect()
 }
 
-/// Number of texels that a side needs so that none is seen under more than `angle` from `distance`, at least 1 and at most
+/// Number of texels that a side needs so that none is seen under more than `angle` from `distance`, at least 1 and at
+/// most
 /// `most`.
 pub(super) fn texels(side: f64, distance: f64, angle: f64, most: u32) -> u32 {
     let texel = 2.0 * distance * math::tan(angle / 2.0);

@@ -1,7 +1,7 @@
 //! A tree of boxes over plan faces, which finds those that may be projected on a plane.
 //!
-//! A plane takes a strip of the ground that is narrow beside the scene, so that most boxes are left out as a whole. What is
-//! found is a superset by ascending numbers: who asks decides about each, so that nothing depends on the tree.
+//! A plane takes a strip of the ground that is narrow beside the scene, so that most boxes are left out as a whole.
+//! What is found is a superset by ascending numbers: who asks decides about each, so that nothing depends on the tree.
 
 use glam::DVec2;
 
@@ -93,8 +93,8 @@ impl PlanTree {
         self.grow(faces, right, first + middle);
     }
 
-    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets, which grow for
-    /// a face by `growth`, at either end.
+    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets, which grow
+    /// for a face by `growth`, at either end.
     pub(super) fn near(&self, limits: &Limits, offsets: Interval, growth: Growth) -> Vec<u32> {
         let mut found = Vec::new();
         let mut open = vec![0_u32];
