@@ -1,7 +1,7 @@
 //! A tree of boxes over plan faces, which finds those that may be projected on a plane.
 //!
 //! A plane takes a strip of the ground that is narrow beside the scene, so that most boxes are left out as a whole.
-//! What is found is a superset by ascending numbers: who asks decides about each, so that nothing depends on the tree.
+//! A search finds a superset by ascending numbers; the caller decides about each, so that nothing depends on the tree.
 
 use glam::DVec2;
 
