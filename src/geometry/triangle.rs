@@ -1,4 +1,4 @@
-//! The point of a triangle that is closest to a point.
+//! A triangle: its normal and area, and its point closest to another one.
 //!
 //! Every Voronoi region (face, three edges, three vertices) and every degenerate triangle (segment, point) gives the
 //! right distance: the candidates of the three edges are right whatever the triangle is, and the face's candidate is

@@ -1,4 +1,4 @@
-//! In how many views an edge is a silhouette edge.
+//! A histogram of edges by the number of views in which they are silhouette edges.
 //!
 //! Lindstrom & Turk 2000, Figure 7: for each level of detail the percentage of edges that are silhouette edges in
 //! exactly `i` of the views, and the expected number of views. The coarser a mesh, the more of its edges lie on a

@@ -21,4 +21,4 @@ pub use polyhedron::Polyhedron;
 pub use prism::Prism;
 pub use quadratic::Quadratic;
 pub use shadow::shadows;
-pub use volume::{CELLS, Source, Volume};
+pub use volume::{MOST_POLYHEDRA, Source, Volume};

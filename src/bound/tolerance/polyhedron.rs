@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{HalfSpace, Quadratic};
 
-/// A side of a cell.
+/// A side of a polyhedron.
 #[derive(Clone, Debug, PartialEq)]
 struct Side {
     bound: HalfSpace,
@@ -117,12 +117,12 @@ impl Polyhedron {
         (sides.len() >= 4).then_some(Self { sides })
     }
 
-    /// Puts what is left of it outside the intersection of half-spaces into `into`: disjoint cells, or itself where
+    /// Puts what is left of it outside the intersection of half-spaces into `into`: disjoint polyhedra, or itself where
     /// there is nothing of it inside. Parts of no more volume than `least` are dropped.
     pub fn outside(self, of: &[HalfSpace], tolerance: f64, least: f64, into: &mut Vec<Self>) {
         let start = into.len();
         let mut rest = self.clone();
-        // What is cut off first stays in one piece: the larger, the fewer cells in the end.
+        // What is cut off first stays in one piece: the larger, the fewer polyhedra in the end.
         let mut order: Vec<(f64, HalfSpace)> = of
             .iter()
             .map(|b| (self.corners().map(|p| b.excess(p)).fold(0.0, f64::max), *b))

@@ -1,4 +1,4 @@
-//! The tolerance volume: all cells where a new vertex may lie (section 2).
+//! The tolerance volume: all polyhedra in which a new vertex may lie (section 2).
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::{Neighborhood, Polyhedron, Quadratic, shadows};
 
 /// Cells of a volume, at most; with more of them the collapse counts as not allowed.
-pub const CELLS: usize = 256;
+pub const MOST_POLYHEDRA: usize = 256;
 
-/// Volume below which a cell is dropped, in cubes of the bound.
+/// Volume below which a polyhedron is dropped, in cubes of the bound.
 const LEAST: f64 = 1e-6;
 
 /// From where caps cast their shadows.
@@ -27,7 +27,7 @@ pub enum Source {
 /// The places that a new vertex may have; relative to the neighbourhood's origin.
 #[derive(Clone, Debug, Default)]
 pub struct Volume {
-    cells: Vec<Polyhedron>,
+    polyhedra: Vec<Polyhedron>,
     tolerance: f64,
 }
 
@@ -35,11 +35,11 @@ impl Volume {
     /// The volume for a bound; empty where nothing is allowed. `tolerance`: length below which points count as on a
     /// plane.
     ///
-    /// O(cells * faces * link edges).
+    /// O(polyhedra * faces * link edges).
     #[must_use]
     pub fn new(around: &Neighborhood, bound: f64, source: Source, tolerance: f64) -> Self {
         let mut own = Self {
-            cells: base(around, bound, tolerance),
+            polyhedra: base(around, bound, tolerance),
             tolerance,
         };
         let least = LEAST * (bound * bound * bound);
@@ -50,16 +50,16 @@ impl Volume {
                 for from in sources(around, i, source) {
                     for shadow in shadows(cap, normal, from, tolerance) {
                         next.clear();
-                        for cell in own.cells.drain(..) {
-                            if cell.misses(&shadow, tolerance) {
-                                next.push(cell);
+                        for polyhedron in own.polyhedra.drain(..) {
+                            if polyhedron.misses(&shadow, tolerance) {
+                                next.push(polyhedron);
                             } else {
-                                cell.outside(&shadow, tolerance, least, &mut next);
+                                polyhedron.outside(&shadow, tolerance, least, &mut next);
                             }
                         }
-                        std::mem::swap(&mut own.cells, &mut next);
-                        if own.cells.is_empty() || own.cells.len() > CELLS {
-                            own.cells.clear();
+                        std::mem::swap(&mut own.polyhedra, &mut next);
+                        if own.polyhedra.is_empty() || own.polyhedra.len() > MOST_POLYHEDRA {
+                            own.polyhedra.clear();
                             return own;
                         }
                     }
@@ -69,16 +69,16 @@ impl Volume {
         own
     }
 
-    /// The cells.
+    /// The polyhedra.
     #[must_use]
-    pub fn cells(&self) -> &[Polyhedron] {
-        &self.cells
+    pub fn polyhedra(&self) -> &[Polyhedron] {
+        &self.polyhedra
     }
 
-    /// True where a position, relative to the neighbourhood's origin, lies in a cell.
+    /// True where a position, relative to the neighbourhood's origin, lies in a polyhedron.
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
-        self.cells.iter().any(|c| c.contains(p, self.tolerance))
+        self.polyhedra.iter().any(|c| c.contains(p, self.tolerance))
     }
 
     /// The point of the volume at which a convex function is least, relative to the neighbourhood's origin; that of the
@@ -86,8 +86,8 @@ impl Volume {
     #[must_use]
     pub fn minimum(&self, of: &Quadratic) -> Option<DVec3> {
         let mut best: Option<(DVec3, f64)> = None;
-        for cell in &self.cells {
-            if let Some((v, value)) = cell.minimum(of, self.tolerance)
+        for polyhedron in &self.polyhedra {
+            if let Some((v, value)) = polyhedron.minimum(of, self.tolerance)
                 && best.is_none_or(|(_, least)| value < least)
             {
                 best = Some((v, value));
@@ -99,16 +99,17 @@ impl Volume {
 
 /// The prisms inside the convex kernel.
 fn base(around: &Neighborhood, bound: f64, tolerance: f64) -> Vec<Polyhedron> {
-    let mut cells = Vec::new();
+    let mut polyhedra = Vec::new();
     for prism in around.prisms() {
         let margin = DVec3::splat(2.0 * bound);
         let [a, b, c] = prism.points;
         let cuboid = Polyhedron::cuboid(a.min(b).min(c) - margin, a.max(b).max(c) + margin);
         let mut bounds = prism.sides(bound).into_iter().chain(around.kernel());
-        let cell = bounds.try_fold(cuboid, |cell, bound| cell.cut(bound, tolerance));
-        cells.extend(cell);
+        let polyhedron =
+            bounds.try_fold(cuboid, |polyhedron, bound| polyhedron.cut(bound, tolerance));
+        polyhedra.extend(polyhedron);
     }
-    cells
+    polyhedra
 }
 
 /// Where the faces stand that might pierce the caps of prism `i`.

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     BillboardOptions, Displacement, Limit, Quad,
     bearing::Bearing,
-    error::{displacement, eyes},
+    displacement::{displacement, eyes},
     flat::{self, Level},
     plan::{Plan, PlanFace},
     quad::{project, texels},

@@ -9,7 +9,7 @@
 
 mod bearing;
 mod cloud;
-mod error;
+mod displacement;
 pub mod files;
 mod flat;
 mod options;
@@ -21,7 +21,7 @@ mod tree;
 mod viewers_in_plan;
 
 pub use cloud::{Cloud, billboards};
-pub use error::Displacement;
+pub use displacement::Displacement;
 pub use options::{BillboardOptions, Limit};
 pub use plan::Up;
 pub use quad::{Quad, Texture};

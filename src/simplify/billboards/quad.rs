@@ -1,4 +1,4 @@
-//! One billboard: where it stands, what is drawn on it, and how fine.
+//! One billboard: its place, its texture, and the size of its texels.
 
 use glam::DVec3;
 

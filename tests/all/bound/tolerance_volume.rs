@@ -282,7 +282,7 @@ fn a_volume_holds_the_positions_that_are_allowed_and_no_others() {
         let bound = 0.05 + 0.3 * random.unit();
         let around = neighborhood(&faces).expect("no needles");
         let volume = Volume::new(&around, bound, Source::Edges, 1e-9);
-        if volume.cells().is_empty() {
+        if volume.polyhedra().is_empty() {
             continue;
         }
         for _ in 0..10 {
@@ -369,7 +369,7 @@ fn the_published_sets_allow_at_least_what_the_rigorous_ones_do() {
             .map(|source| Volume::new(&around, 0.15, source, 1e-9));
         for _ in 0..20 {
             let v = random.vector(0.4);
-            if strict.contains(v) && !loose.cells().is_empty() {
+            if strict.contains(v) && !loose.polyhedra().is_empty() {
                 assert!(loose.contains(v), "{v}");
                 both += 1;
             } else if loose.contains(v) {
@@ -415,14 +415,14 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
         let Some(best) = volume.minimum(&of) else {
             continue;
         };
-        assert!(volume.cells().iter().any(|c| c.contains(best, 1e-6)));
+        assert!(volume.polyhedra().iter().any(|c| c.contains(best, 1e-6)));
         for _ in 0..60 {
             let v = if random.below(2) == 0 {
                 random.vector(0.6)
             } else {
                 best + random.vector(1e-3)
             };
-            if volume.cells().iter().any(|c| c.contains(v, 0.0)) {
+            if volume.polyhedra().iter().any(|c| c.contains(v, 0.0)) {
                 assert!(value(v) >= value(best) - 1e-9, "{v} beats {best}");
                 compared += 1;
             }
@@ -469,7 +469,7 @@ fn a_needle_or_a_folded_ring_has_no_volume() {
     let around = neighborhood(&folded);
     let empty = around.is_none_or(|a| {
         Volume::new(&a, 0.05, Source::Edges, 1e-9)
-            .cells()
+            .polyhedra()
             .is_empty()
     });
     assert!(empty, "a folded ring has an empty kernel");
