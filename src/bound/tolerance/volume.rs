@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Neighborhood, Polyhedron, Quadratic, shadows};
 
-/// Cells of a volume, at most; with more of them the collapse counts as not allowed.
+/// Polyhedra of a volume, at most; with more of them the collapse counts as not allowed.
 pub const MOST_POLYHEDRA: usize = 256;
 
 /// Volume below which a polyhedron is dropped, in cubes of the bound.
