@@ -31,7 +31,7 @@ pub struct Claims {
 pub fn claims(
     reference: &Mesh,
     low: &Mesh,
-    replacement: &impl Replacement,
+    replacement: &dyn Replacement,
     cell: &ViewCell,
 ) -> Claims {
     let positions = reference.positions();

@@ -160,7 +160,7 @@ struct Judged {
 /// [`Error::Interrupted`](crate::Error::Interrupted).
 pub fn measure(
     pairs: Vec<Pair>,
-    replacement: &impl Replacement,
+    replacement: &dyn Replacement,
     measure: Measure<'_>,
     effort: Effort,
     progress: &dyn Progress,
@@ -214,7 +214,7 @@ pub fn measure(
 }
 
 /// The better of the map that the pair came with and the one that is proposed.
-fn judge(pair: Pair, depth: u8, replacement: &impl Replacement, measure: Measure<'_>) -> Judged {
+fn judge(pair: Pair, depth: u8, replacement: &dyn Replacement, measure: Measure<'_>) -> Judged {
     let inherited = || judge_map(pair, depth, measure);
     let Some(to) = replacement.propose(pair.from) else {
         return inherited();

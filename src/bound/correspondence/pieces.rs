@@ -211,11 +211,11 @@ impl Correspondence {
     pub fn allows(
         &self,
         layout: &Layout,
-        allowance: &impl Allowance,
+        allowance: &dyn Allowance,
         scratch: &mut PieceScratch,
     ) -> Answer {
         let mut corners = self.total;
-        let all = self.visit(layout, scratch, |triangle, _, placed| {
+        let all = self.visit(layout, scratch, &mut |triangle, _, placed| {
             corners += placed.corners.len();
             allowance.allows(triangle, &placed.from, &placed.to)
         });
@@ -243,7 +243,7 @@ impl Correspondence {
         &self,
         layout: &Layout,
         scratch: &mut PieceScratch,
-        mut visit: impl FnMut(u32, &Part, &Placed) -> bool,
+        visit: &mut dyn FnMut(u32, &Part, &Placed) -> bool,
     ) -> Option<bool> {
         let PieceScratch {
             split,
@@ -270,7 +270,7 @@ impl Correspondence {
                         return Some(false);
                     }
                 } else if is_whole(piece) {
-                    if !layout.sectors.cut(&cut[start..], cutting, place)? {
+                    if !layout.sectors.cut(&cut[start..], cutting, &mut place)? {
                         return Some(false);
                     }
                 } else {
@@ -289,11 +289,12 @@ impl Correspondence {
             outlines(pieces, outlining, outline, ends)?;
             let mut start = 0;
             for &end in ends.iter() {
-                let place = |part: &Part, polygon: &[OutlineCorner]| {
+                let mut place = |part: &Part, polygon: &[OutlineCorner]| {
                     let covers = placed.place(self.original(triangle), polygon, part)?;
                     Some(!covers || visit(triangle, part, placed))
                 };
-                if !layout.sectors.cut(&outline[start..end], cutting, place)? {
+                let outline = &outline[start..end];
+                if !layout.sectors.cut(outline, cutting, &mut place)? {
                     return Some(false);
                 }
                 start = end;
@@ -306,7 +307,7 @@ impl Correspondence {
     #[must_use]
     pub fn apply(&mut self, layout: &Layout, scratch: &mut PieceScratch) -> bool {
         let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(layout.before.len());
-        let all = self.visit(layout, scratch, |triangle, part, placed| {
+        let all = self.visit(layout, scratch, &mut |triangle, part, placed| {
             let known = new.iter().position(|(id, _)| *id == part.face.id);
             let i = known.unwrap_or(new.len());
             if known.is_none() {

@@ -118,7 +118,7 @@ impl Sectors {
         &self,
         outline: &[OutlineCorner],
         scratch: &mut CutScratch,
-        mut visit: impl FnMut(&Part, &[OutlineCorner]) -> Option<bool>,
+        visit: &mut dyn FnMut(&Part, &[OutlineCorner]) -> Option<bool>,
     ) -> Option<bool> {
         scratch.sectors.clear();
         let sectors = outline.iter().map(|c| self.sector_of(c.plane));

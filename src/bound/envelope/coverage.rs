@@ -199,7 +199,7 @@ impl Trial {
     pub fn covers(&mut self, fan: impl Iterator<Item = [DVec3; 3]>, reach: Reach) -> bool {
         self.arm(fan)
             && self.all_within_reach(reach)
-            && (0..self.corners.len()).all(|i| self.triangle(i, reach, |_, _| {}))
+            && (0..self.corners.len()).all(|i| self.triangle(i, reach, &mut |_, _| {}))
     }
 
     /// As [`Trial::covers`]; fills `change` with the new witnesses. `ids` are the faces that come, in the order of
@@ -223,7 +223,7 @@ impl Trial {
         for i in 0..self.corners.len() {
             let mut chosen = 0_u128;
             let facets = std::mem::take(&mut self.facets);
-            let near = self.triangle_of(&facets, i, reach, |piece, common| {
+            let near = self.triangle_of(&facets, i, reach, &mut |piece, common| {
                 if common & chosen == 0 {
                     chosen |= 1 << nearest(&facets, common, piece);
                 }
@@ -265,7 +265,12 @@ impl Trial {
         true
     }
 
-    fn triangle(&mut self, i: usize, reach: Reach, settled: impl FnMut([DVec3; 3], u128)) -> bool {
+    fn triangle(
+        &mut self,
+        i: usize,
+        reach: Reach,
+        settled: &mut dyn FnMut([DVec3; 3], u128),
+    ) -> bool {
         let facets = std::mem::take(&mut self.facets);
         let near = self.triangle_of(&facets, i, reach, settled);
         self.facets = facets;
@@ -278,7 +283,7 @@ impl Trial {
         facets: &[Facet],
         i: usize,
         reach: Reach,
-        mut settled: impl FnMut([DVec3; 3], u128),
+        settled: &mut dyn FnMut([DVec3; 3], u128),
     ) -> bool {
         let corners = self.corners[i].map(|p| self.points[p as usize]);
         let masks = self.corners[i].map(|p| self.masks[p as usize]);

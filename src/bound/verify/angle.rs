@@ -261,7 +261,7 @@ impl AngleCheck<'_> {
             let group = parallel::map((chunks - start).min(GROUP as u64) as usize, |i| {
                 let mut own = AngleTally::default();
                 let (mut k, mut near, mut corners) = ((start + i as u64) * CHUNK, 0, Vec::new());
-                plan.visit(k..plan.len().min(k + CHUNK), |sample| {
+                plan.visit(k..plan.len().min(k + CHUNK), &mut |sample| {
                     match self.record {
                         Some(record) => self.follow(record, sample, k, &mut corners, &mut own),
                         None => near = self.look(&facets, sample, k, near, &mut own),

@@ -282,7 +282,7 @@ impl DistanceCheck<'_> {
         let mut enough = known;
         plan.visit(
             chunk * CHUNK..plan.len().min((chunk + 1) * CHUNK),
-            |sample: Sample| {
+            &mut |sample: Sample| {
                 let point = sample.point(self.from.corners[sample.triangle as usize]);
                 let squared;
                 (squared, near) = self.to.facets.nearest(point, near, enough);

@@ -70,7 +70,7 @@ impl Samples {
     }
 
     /// Calls `visit` with every point of a range, in order.
-    pub(super) fn visit(&self, range: std::ops::Range<u64>, mut visit: impl FnMut(Sample)) {
+    pub(super) fn visit(&self, range: std::ops::Range<u64>, visit: &mut dyn FnMut(Sample)) {
         let mut at = None;
         for k in range {
             if k < self.inside {
