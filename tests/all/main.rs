@@ -5,6 +5,7 @@ mod bound;
 mod cli;
 mod collapse;
 mod encode;
+mod front_door;
 mod golden;
 mod io;
 mod mesh;
