@@ -6,7 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use lodmark::{
     Silent,
-    mesh::Mesh,
+    mesh::generate::{self, Height},
     metric::{
         luma::squared_error,
         silhouette::silhouette_histogram,
@@ -16,31 +16,10 @@ use lodmark::{
     view::Eye,
 };
 
-/// A wavy sheet of `2 * side * side` triangles.
-fn sheet(side: u32) -> Mesh {
-    let mut positions = Vec::new();
-    let mut triangles = Vec::new();
-    for y in 0..=side {
-        for x in 0..=side {
-            let (u, v) = (
-                f64::from(x) / f64::from(side),
-                f64::from(y) / f64::from(side),
-            );
-            let wave = (u * (1.0 - u) * 9.0 - v) * (v * (1.0 - v) * 7.0 - u);
-            positions.push(DVec3::new(u, v, 0.1 * wave));
-            if x < side && y < side {
-                let a = y * (side + 1) + x;
-                let c = a + side + 1;
-                triangles.extend([[a, a + 1, c + 1], [a, c + 1, c]]);
-            }
-        }
-    }
-    Mesh::from_triangles(positions, triangles).expect("indices of the grid")
-}
-
 fn metrics(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("metric");
     group.sample_size(10);
+    let sheet = |side| generate::grid(side, side, Height::Waves);
     let (fine, coarse) = (sheet(186), sheet(26));
     group.bench_function("surface distance, 69k and 1.3k triangles", |b| {
         b.iter(|| surface_distance(black_box(&fine), &coarse, DEFAULT_SAMPLES, &Silent));

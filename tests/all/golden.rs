@@ -246,10 +246,7 @@ fn the_command_refuses_a_golden_that_does_not_hold() {
     let first = if value.starts_with('0') { "1" } else { "0" };
     let planted = format!("{name} {first}{}", &value[1..]);
     fs::write(&record, text.replace(&format!("{name} {value}"), &planted)).expect("writable");
-    let done = lodmark(
-        &folder,
-        &["golden", "check", "--group", "pictures", "--out", "out"],
-    );
+    let done = lodmark(&folder, "golden check --group pictures --out out");
     let said = String::from_utf8_lossy(&done.stdout);
     assert_eq!(done.status.code(), Some(1), "{said}");
     assert!(

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Embree as an oracle: casts the rays of a view file, and measures visibility with them. Run by tests/all/embree.rs.
+"""Embree as an oracle: casts the rays of a view file, and measures visibility with them. Run by tests/all/visibility/embree.rs.
 
     embree.py check                nothing but whether everything can be imported
     embree.py cast FOLDER          FOLDER/scene.json, positions.npy, indices.npy

@@ -319,7 +319,7 @@ fn images_are_equal_or_it_is_said_where_they_are_not() {
         sizes["comparison"]["sizes"]["actual"],
         serde_json::json!([4, 1])
     );
-    let said = stdout(&lodmark(&dir, &["compare", "a.png", "b.png"]));
+    let said = stdout(&lodmark(&dir, "compare a.png b.png"));
     assert!(
         said.contains("1 of 8 pixels differ, first at (2, 1)"),
         "{said}"
@@ -390,19 +390,11 @@ fn a_candidate_that_shows_nothing_or_lies_too_far_away_is_refused() {
     triangle("tiny.obj", "1e-300");
     triangle("vast.obj", "1e300");
     fs::write(dir.path().join("points.obj"), "v 0 0 0\n").expect("writes");
-    let said = expect(&dir, 3, &["compare", "tiny.obj", "points.obj"]);
+    let said = expect(&dir, 3, "compare tiny.obj points.obj");
     assert!(said.contains("points.obj"), "{said}");
-    let said = expect(
-        &dir,
-        4,
-        &["compare", "tiny.obj", "vast.obj", "--size", "16"],
-    );
+    let said = expect(&dir, 4, "compare tiny.obj vast.obj --size 16");
     assert!(said.contains("units"), "{said}");
-    expect(
-        &dir,
-        0,
-        &["compare", "vast.obj", "tiny.obj", "--size", "16"],
-    );
+    expect(&dir, 0, "compare vast.obj tiny.obj --size 16");
 }
 
 #[test]

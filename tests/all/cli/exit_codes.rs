@@ -93,7 +93,7 @@ fn help_and_version_are_results_and_go_to_stdout() {
 fn an_output_of_unknown_format_is_refused_before_any_work() {
     let dir = folder();
     // The input does not even exist: nobody has looked for it yet.
-    let said = expect(&dir, 2, &["simplify", "in.ply", "out.step", "-t", "5"]);
+    let said = expect(&dir, 2, "simplify in.ply out.step -t 5");
     assert!(said.contains("out.step") && said.contains(".obj"), "{said}");
 }
 
@@ -266,8 +266,8 @@ fn a_mesh_with_findings_is_a_negative_answer_and_no_failure() {
     let dir = folder();
     put(&dir, "closed.ply", &generate::icosphere(1));
     fs::write(dir.path().join("bad.obj"), format!("{TRIANGLE}f 1 1 2\n")).expect("writes");
-    expect(&dir, 0, &["check", "closed.ply"]);
-    let output = lodmark(&dir, &["check", "bad.obj"]);
+    expect(&dir, 0, "check closed.ply");
+    let output = lodmark(&dir, "check bad.obj");
     assert_eq!(code(&output), 1);
     assert!(!stdout(&output).is_empty());
 }

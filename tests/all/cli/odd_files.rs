@@ -73,11 +73,7 @@ fn an_output_that_cannot_be_written_is_found_before_the_work_and_leaves_nothing(
     let twice = [&TORUS[..], &["50", "--json", "out.ply"]].concat();
     assert!(expect(&folder, 2, &twice).contains("written twice"));
     fs::create_dir(folder.path().join("dir.ply")).expect("a folder");
-    let message = expect(
-        &folder,
-        5,
-        &["simplify", "torus.ply", "dir.ply", "-t", "50"],
-    );
+    let message = expect(&folder, 5, "simplify torus.ply dir.ply -t 50");
     assert!(message.contains("it is a folder"), "{message}");
     let left = fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(left, 2, "only the input and the folder");
@@ -174,7 +170,7 @@ proptest! {
 #[test]
 fn a_pipe_is_read_like_a_file() {
     let folder = with_torus();
-    let direct = lodmark(&folder, &["check", "torus.ply"]);
+    let direct = lodmark(&folder, "check torus.ply");
     if cfg!(target_os = "linux") {
         let file = fs::File::open(folder.path().join("torus.ply")).expect("opens");
         let mut command = Command::new("cat");

@@ -12,7 +12,7 @@ fn the_report_has_every_key_that_scripts_rely_on() {
     put(&dir, "in.ply", &generate::shells(2, 2));
     let output = lodmark(
         &dir,
-        &split("visibility in.ply --cameras 18 --size 48 --json r.json --out v.ply"),
+        "visibility in.ply --cameras 18 --size 48 --json r.json --out v.ply",
     );
     assert_eq!(code(&output), 0);
     let said = stdout(&output);
@@ -50,46 +50,34 @@ fn views_on_several_machines_give_the_file_of_one() {
     for (range, name) in [("7..18", "c.vis"), ("0..2", "a.vis"), ("2..7", "b.vis")] {
         run(&["--view-range", range, "--partial", name, "--threads", "3"]);
     }
-    let said = expect(
-        &dir,
-        0,
-        &["merge-visibility", "c.vis", "a.vis", "--out", "ca.vis"],
-    );
+    let said = expect(&dir, 0, "merge-visibility c.vis a.vis --out ca.vis");
     assert!(said.contains("0..2, 7..18 of 18"), "{said}");
     expect(
         &dir,
         0,
-        &split("merge-visibility b.vis ca.vis --out sum.vis --json m.json"),
+        "merge-visibility b.vis ca.vis --out sum.vis --json m.json",
     );
     assert_eq!(json(&dir, "m.json")["complete"], true);
     let bytes = |name: &str| fs::read(dir.path().join(name)).expect("a file");
     assert_eq!(bytes("sum.vis"), bytes("all.vis"));
-    expect(
-        &dir,
-        0,
-        &split("visibility in.ply --from sum.vis --json from.json"),
-    );
+    expect(&dir, 0, "visibility in.ply --from sum.vis --json from.json");
     let [direct, from] = ["direct.json", "from.json"].map(|name| json(&dir, name));
     assert_eq!(direct["v_mesh"], from["v_mesh"]);
-    let said = expect(
-        &dir,
-        2,
-        &["merge-visibility", "a.vis", "ca.vis", "--out", "x.vis"],
-    );
+    let said = expect(&dir, 2, "merge-visibility a.vis ca.vis --out x.vis");
     assert!(said.contains("views 0..2 in common"), "{said}");
     assert!(!dir.path().join("x.vis").exists());
-    let said = expect(&dir, 3, &["visibility", "in.ply", "--from", "ca.vis"]);
+    let said = expect(&dir, 3, "visibility in.ply --from ca.vis");
     assert!(
         said.contains("ca.vis") && said.contains("merge the missing parts"),
         "{said}"
     );
     put(&dir, "other.ply", &generate::torus(1.0, 0.5, 16, 8));
-    let said = expect(&dir, 3, &["visibility", "other.ply", "--from", "sum.vis"]);
+    let said = expect(&dir, 3, "visibility other.ply --from sum.vis");
     assert!(
         said.contains("sum.vis") && said.contains("another mesh;"),
         "{said}"
     );
-    let said = expect(&dir, 3, &["merge-visibility", "in.ply", "--out", "x.vis"]);
+    let said = expect(&dir, 3, "merge-visibility in.ply --out x.vis");
     assert!(said.contains("not a survey"), "{said}");
 }
 
@@ -107,9 +95,7 @@ fn no_order_of_triangles_in_the_file_changes_the_answer() {
         expect(
             &dir,
             0,
-            &split(&format!(
-                "visibility {input} --cameras 6 --size 32 --partial {out}"
-            )),
+            &format!("visibility {input} --cameras 6 --size 32 --partial {out}"),
         );
     }
     let bytes = |name: &str| fs::read(dir.path().join(name)).expect("a file");
@@ -123,33 +109,7 @@ fn every_product_is_written_at_once() {
     expect(
         &dir,
         0,
-        &[
-            "visibility",
-            "in.obj",
-            "--cameras",
-            "6",
-            "--size",
-            "24",
-            "--paper",
-            "--fractional",
-            "--two-sided",
-            "--edge-limit",
-            "none",
-            "--out",
-            "v.ply",
-            "--table",
-            "f.npy",
-            "--convergence",
-            "figure.svg",
-            "--remove-hidden",
-            "outer.obj",
-            "--rings",
-            "1",
-            "--partial",
-            "p.vis",
-            "--json",
-            "r.json",
-        ],
+        "visibility in.obj --cameras 6 --size 24 --paper --fractional --two-sided --edge-limit none --out v.ply --table f.npy --convergence figure.svg --remove-hidden outer.obj --rings 1 --partial p.vis --json r.json",
     );
     let table = lodmark::encode::npy::read_plane::<u8>(&dir.path().join("f.npy")).expect("reads");
     assert_eq!((table.width(), table.height()), (20, 6));
@@ -227,7 +187,7 @@ fn counts_of_another_version_are_refused() {
     let seal = Sha256::digest(&bytes[..end]);
     bytes[end..].copy_from_slice(&seal);
     fs::write(dir.path().join("other.vis"), bytes).expect("writes");
-    let said = expect(&dir, 4, &["visibility", "in.ply", "--from", "other.vis"]);
+    let said = expect(&dir, 4, "visibility in.ply --from other.vis");
     assert!(
         said.contains("other.vis") && said.contains("measure again"),
         "{said}"

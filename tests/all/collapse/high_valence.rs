@@ -16,7 +16,7 @@ use lodmark::{
     },
     mesh::{Materials, Mesh, MeshParts, canonical},
     simplify::{
-        Options, Outcome, Target, simplify,
+        Options, Target, simplify,
         tolerance::{Distance, ToleranceOptions},
         view_bounded::ViewBoundedOptions,
     },
@@ -283,29 +283,35 @@ fn no_method_is_asked_about_more_faces_than_it_looks_at() {
     assert!(live.triangle_count() <= 10, "{}", live.triangle_count());
 }
 
-/// Evaluations that were not refused for the number of faces, per face of a disc.
-fn looks(mesh: &Mesh, outcome: &Outcome) -> f64 {
-    let counters = &outcome.phases[0].counters;
-    let refused = counters.refusals.count(Refusal::Valence);
-    (counters.evaluations - refused) as f64 / mesh.triangles().len() as f64
+/// Edges of a disc that are evaluated or estimated down to 100 triangles, but for those refused for their number of faces.
+fn looks(faces: u32, options: &Options) -> u64 {
+    let outcome = simplify(&disc(faces), options).expect("valid");
+    assert!(outcome.mesh.triangles().len() <= 100);
+    let counters = outcome.phases.iter().map(|phase| &phase.counters);
+    let looks = counters.map(|c| c.evaluations + c.estimates - c.refusals.count(Refusal::Valence));
+    looks.sum()
 }
 
 #[test]
 fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
-    let mesh = disc(2_000);
-    let own = ToleranceOptions::new(Distance::OfDiagonal(0.005));
-    let options = Options::tolerance(own, Target::Triangles(100));
-    let tolerance = simplify(&mesh, &options).expect("valid");
     let cell = ViewCell::point(DVec3::new(0.0, 0.0, 5.0)).expect("a point");
-    let own = ViewBoundedOptions::new(cell, 0.1);
-    let options = Options::view_bounded(own, Target::ErrorOnly);
-    let fewer = disc(600);
-    let view_bounded = simplify(&fewer, &options).expect("valid");
-    for (mesh, outcome) in [(mesh, tolerance), (fewer, view_bounded)] {
-        let left = outcome.mesh.triangles().len();
-        assert!(left <= 100, "{left}");
-        let looks = looks(&mesh, &outcome);
-        assert!(looks < 12.0, "{looks} looks for each face");
+    let (target, own) = (Target::Triangles(100), Distance::OfDiagonal(0.005));
+    let tolerance = Options::tolerance(ToleranceOptions::new(own), target);
+    let view_bounded = Options::view_bounded(ViewBoundedOptions::new(cell, 0.1), Target::ErrorOnly);
+    // Where a hub has few enough faces all of it is looked at: only what more faces add is bounded.
+    for (few, many, most, options) in [
+        (0, 2_000, 12.0, tolerance),
+        (0, 600, 12.0, view_bounded),
+        (600, 2_000, 16.0, Options::memoryless(target)),
+        (600, 2_000, 16.0, Options::quadric(target)),
+    ] {
+        let before = if few > 0 { looks(few, &options) } else { 0 };
+        let more = (looks(many, &options) - before) as f64 / f64::from(many - few);
+        assert!(
+            more < most,
+            "{}: {more} looks for each face",
+            options.method.name()
+        );
     }
 }
 

@@ -335,8 +335,6 @@ fn the_command_bounds_verifies_and_refuses() {
     expect(
         &dir,
         2,
-        &[
-            "simplify", "in.ply", "o.ply", "--method", "quadric", "-t", "9", "--cell", "c.json",
-        ],
+        "simplify in.ply o.ply --method quadric -t 9 --cell c.json",
     );
 }

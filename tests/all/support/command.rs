@@ -14,21 +14,56 @@ pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("target is writable")
 }
 
+/// The arguments of a command: a line of words, or a list.
+pub(crate) trait Arguments {
+    fn list(&self) -> Vec<&str>;
+}
+
+impl Arguments for str {
+    fn list(&self) -> Vec<&str> {
+        split(self)
+    }
+}
+
+impl Arguments for String {
+    fn list(&self) -> Vec<&str> {
+        split(self)
+    }
+}
+
+impl Arguments for [&str] {
+    fn list(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl Arguments for Vec<&str> {
+    fn list(&self) -> Vec<&str> {
+        self.clone()
+    }
+}
+
+impl<const N: usize> Arguments for [&str; N] {
+    fn list(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
 /// The words of a command line.
 pub(crate) fn split(words: &str) -> Vec<&str> {
     words.split(' ').collect()
 }
 
 /// Runs the command in a folder.
-pub(crate) fn lodmark(folder: &TempDir, arguments: &[&str]) -> Output {
+pub(crate) fn lodmark(folder: &TempDir, arguments: &(impl Arguments + ?Sized)) -> Output {
     command(folder, arguments)
         .output()
         .expect("the command starts")
 }
 
-pub(crate) fn command(folder: &TempDir, arguments: &[&str]) -> Command {
+pub(crate) fn command(folder: &TempDir, arguments: &(impl Arguments + ?Sized)) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lodmark"));
-    command.current_dir(folder.path()).args(arguments);
+    command.current_dir(folder.path()).args(arguments.list());
     command
 }
 
@@ -46,15 +81,16 @@ pub(crate) fn stdout(output: &Output) -> String {
 
 /// Runs the command and holds it to an exit code; the answer is what it said on stderr.
 #[track_caller]
-pub(crate) fn expect(folder: &TempDir, exit: i32, arguments: &[&str]) -> String {
+pub(crate) fn expect(folder: &TempDir, exit: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = lodmark(folder, arguments);
     let said = stderr(&output);
-    assert_eq!(code(&output), exit, "{arguments:?} said {said}");
+    assert_eq!(code(&output), exit, "{:?} said {said}", arguments.list());
     if exit > 1 {
         assert_eq!(
             stdout(&output),
             "",
-            "{arguments:?}: a failure has no result"
+            "{:?}: a failure has no result",
+            arguments.list()
         );
     }
     said
