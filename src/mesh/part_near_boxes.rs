@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_that_touches_a_box_is_left_out_or_all_are_taken() {
+    fn every_face_that_touches_a_box_is_taken_and_not_all_are() {
         let mesh = generate::interlocking_tori(32, 16);
         let bounds = mesh.bounds().expect("not empty");
         let at = |x: f64, y: f64, z: f64| bounds.0 + (bounds.1 - bounds.0) * DVec3::new(x, y, z);

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cells_of_the_cameras_have_other_areas() {
+    fn the_cells_of_the_cameras_have_the_known_areas() {
         for (k, count, smallest, largest) in [
             (0, 6, 1.0, 1.0),
             (1, 18, 0.649_040_687_816_356_4, 1.175_479_656_091_822),
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn cameras_with_equal_weights_add_up_to_other_sums() {
+    fn cameras_with_equal_weights_add_up_to_the_known_sums() {
         for (k, along_z, along_diagonal) in [
             (1, 3.828_427_124_746_19, 4.181_540_550_352_055_5),
             (2, 15.586_651_631_673_504, 16.239_219_961_374_562),
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn weighted_cameras_prefer_a_direction() {
+    fn weighted_cameras_prefer_no_direction() {
         let weights = area_weights(3);
         let towards: Vec<DVec3> = octahedron(3).into_iter().map(turned).collect();
         for n in octahedron(4) {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn the_turned_cameras_are_no_rotation_or_an_aligned_one() {
+    fn the_turned_cameras_are_a_rotation_and_none_is_aligned() {
         let (old, new) = (octahedron(2), octahedron(2).into_iter().map(turned));
         let new: Vec<DVec3> = new.collect();
         for (a, b) in [(0, 1), (2, 31), (17, 60), (5, 44)] {

@@ -126,7 +126,7 @@ mod tests {
     use crate::bound::planar::Aperture;
 
     #[test]
-    fn a_bearing_turns_into_planes_along_the_direction_or_a_distance_has_slants() {
+    fn no_bearing_turns_into_planes_along_the_direction_and_a_distance_has_no_slants() {
         let aperture = Aperture::degrees(1.0).expect("below 90");
         let options = BillboardOptions {
             directions: 7,

@@ -134,7 +134,7 @@ mod tests {
     use crate::mesh::generate::Pcg32;
 
     #[test]
-    fn a_face_or_an_offset_is_fuller_than_its_sweep_says() {
+    fn no_face_and_no_offset_is_fuller_than_its_sweep_says() {
         let mut random = Pcg32::new(2007, 403);
         for case in 0..200 {
             let count = 1 + case % 40;
