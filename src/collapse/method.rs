@@ -71,7 +71,7 @@ impl<'a> Site<'a> {
         Ok(Admitted(position))
     }
 
-    /// Fills `patch` with the collapse to `position`: what to render for this candidate, under its final ids.
+    /// Fills `patch` with the collapse to `position`: the faces of this candidate, under their final ids.
     pub fn patch(&self, position: Admitted, patch: &mut Patch) {
         self.star.patch(self.live, position.0, patch);
     }

@@ -1,4 +1,4 @@
-//! The state of every edge between evaluations, and when edges are evaluated again.
+//! The queue: the state of every edge between evaluations.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub enum Schedule {
 struct Mark {
     /// The round in which the edge was last marked.
     round: u32,
-    /// Its star changed since it was evaluated, or was only rough.
+    /// Its star changed since it was evaluated, or the evaluation was rough.
     dirty: bool,
     /// It is in the heap.
     queued: bool,
@@ -44,7 +44,7 @@ pub(super) struct Queue {
 
 /// The edge at the front.
 pub(super) enum Front {
-    /// Its star changed since it was evaluated, or was only rough.
+    /// Its star changed since it was evaluated, or the evaluation was rough.
     Stale(u32),
     /// The next collapse.
     Ready(u32, Proposal),
@@ -65,27 +65,23 @@ impl Queue {
             proposals: vec![None; ids],
             ..Self::default()
         };
+        let queued = |waits: bool| Mark {
+            round: 0,
+            dirty: waits,
+            queued: true,
+            estimated: waits,
+        };
         let mut entries = Vec::with_capacity(evaluated.len() + estimated.len());
         for (id, proposal) in evaluated {
             if let Some(key) = key(live, id, &proposal) {
                 queue.proposals[id as usize] = Some(proposal);
-                queue.marks[id as usize] = Mark {
-                    round: 0,
-                    dirty: rough,
-                    queued: true,
-                    estimated: rough,
-                };
+                queue.marks[id as usize] = queued(rough);
                 entries.push((key, id));
             }
         }
         for (id, cost) in estimated {
             if let Some(key) = estimated_key(live, id, cost) {
-                queue.marks[id as usize] = Mark {
-                    round: 0,
-                    dirty: true,
-                    queued: true,
-                    estimated: true,
-                };
+                queue.marks[id as usize] = queued(true);
                 entries.push((key, id));
             }
         }
