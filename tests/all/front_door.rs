@@ -93,6 +93,22 @@ fn every_example_is_one_that_runs() {
     assert_eq!(found, listed);
 }
 
+#[test]
+fn the_readme_shows_the_example_that_the_documentation_runs() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).expect("a text file");
+    let (readme, library) = (read("README.md"), read("src/lib.rs"));
+    let example = readme.split("```rust\n").nth(1).expect("an example");
+    let example = example.split("```").next().expect("its text");
+    let visible = library
+        .lines()
+        .skip_while(|line| *line != "//! ```")
+        .skip(1)
+        .take_while(|line| *line != "//! ```")
+        .map(|line| line.trim_start_matches("//!").trim())
+        .filter(|line| !line.starts_with("# "));
+    assert!(visible.eq(example.lines()));
+}
+
 /// The parts of `text` that stand between `before` and the next quotation mark.
 fn quoted<'a>(text: &'a str, before: &str) -> Vec<&'a str> {
     let rest = text.split(before).skip(1);
