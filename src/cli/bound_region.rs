@@ -138,7 +138,7 @@ struct Trace {
     foot: [f64; 2],
     /// Along the line, or the border of a half-space.
     along: [f64; 2],
-    /// Where viewers are beside the border.
+    /// The side of the border where viewers are.
     inward: Option<[f64; 2]>,
 }
 

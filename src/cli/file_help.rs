@@ -38,7 +38,7 @@ The counts of a visibility measurement are a binary file: `lodmark visibility --
 some, `lodmark merge-visibility` puts several together, and `lodmark visibility --from`, `lodmark simplify --visibility` \
 and `lodmark levels --visibility` read those of all views.";
 
-/// Which part of a simplified mesh stands for which part of the original.
+/// The map from parts of the original to parts of a simplified mesh.
 pub(super) const CORRESPONDENCE: &str = "\
 The record of which part of OUT stands for which part of IN is a binary file: `lodmark simplify --bound-out` writes it, \
 and `lodmark verify --bound` and `lodmark bound --correspondence` read it.";

@@ -1,4 +1,4 @@
-//! Where a command that is guided by visibility gets it from: a measurement, or a file that holds one.
+//! The options of a command that is guided by visibility: a measurement, or a file that holds one.
 
 use std::path::PathBuf;
 

@@ -36,6 +36,19 @@ pub(super) fn welded(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
     welded.mesh
 }
 
+/// A mesh as read from `path` in canonical order, without triangles that use a vertex twice.
+pub(super) fn canonical(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
+    let canonical = mesh::canonical(&mesh);
+    if canonical.degenerate > 0 {
+        terminal.say(&format!(
+            "{}: left out {} triangles that use a vertex twice",
+            path.display(),
+            canonical.degenerate
+        ));
+    }
+    canonical.mesh
+}
+
 /// Refuses a mesh that shows nothing.
 pub(super) fn require_triangles(path: &Path, mesh: &Mesh) -> Result<()> {
     if mesh.triangles().is_empty() {

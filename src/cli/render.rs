@@ -40,7 +40,7 @@ pub(super) struct RenderArgs {
     /// Flat or Gouraud [default: flat]
     #[arg(long, value_enum)]
     shading: Option<Interpolation>,
-    /// Which side is left out [default: none]
+    /// The side of triangles that is left out [default: none]
     #[arg(long, value_enum)]
     cull: Option<Cull>,
     /// Orthographic instead of perspective views

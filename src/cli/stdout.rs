@@ -21,7 +21,7 @@ pub(super) fn line(text: fmt::Arguments<'_>) {
     }
 }
 
-/// Whether every line was written. A reader that left early (`| head`) has seen what it wanted.
+/// Reports whether every line was written. A reader that left early (`| head`) has seen what it wanted.
 ///
 /// # Errors
 /// [`Error::Io`] for every other reason.

@@ -21,7 +21,7 @@ pub struct ConvergenceStep {
 }
 
 /// Measures with 6, 18, 66, 258, 1,026 and 4,098 cameras; the last step is what the others are compared with, so its
-/// error is 0. What `options` say about the number of cameras is left aside. Costs 5,472 views.
+/// error is 0. The number of cameras in `options` is left aside. Costs 5,472 views.
 ///
 /// # Errors
 /// As [`measure`].

@@ -49,7 +49,7 @@ struct Slope {
     y: f64,
 }
 
-/// Which vertices a view sees, by the depths around them.
+/// The vertices that a view sees, by the depths around them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DepthTest {
     rule: UnseenRule,

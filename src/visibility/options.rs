@@ -30,7 +30,7 @@ pub enum CameraWeights {
     Area,
 }
 
-/// When a triangle that no pixel shows is visible all the same.
+/// The rule by which a triangle that no pixel shows is visible all the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum UnseenRule {
@@ -59,7 +59,7 @@ pub struct MeasureOptions {
     pub alignment: Alignment,
     /// The weight of each.
     pub weights: CameraWeights,
-    /// When a triangle that no pixel shows is visible.
+    /// The rule for triangles that no pixel shows.
     pub unseen: UnseenRule,
     /// True: a view sees as much of a triangle as the share of its covered samples that show it, instead of all or
     /// nothing (the paper's future work). Triangles that cover no sample are all or nothing still.

@@ -3,7 +3,7 @@
 use super::{MeasureOptions, PartialVisibility};
 use crate::{Error, Progress, Result, mesh::Mesh, raster::Grid};
 
-/// Which view sees which triangle, a bit for each.
+/// A bit for every view and triangle: whether the view sees it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VisibilityTable {
     packed: Grid<u8>,
@@ -21,7 +21,7 @@ impl VisibilityTable {
     /// True where view `camera` sees anything of `triangle`.
     ///
     /// # Panics
-    /// Where there is no such camera or triangle.
+    /// For a camera or triangle that there is not.
     #[must_use]
     pub fn sees(&self, camera: u32, triangle: usize) -> bool {
         assert!(

@@ -15,7 +15,7 @@ use crate::{
         correspondence,
         heuristics::{self, Claims},
         surface::{self, Effort, Given, Measure, Pair, SurfaceBound},
-        view_cell::file,
+        view_cell::{ViewCell, file},
     },
     encode::bytes,
     mesh::{self, Mesh},
@@ -127,33 +127,25 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
         )
     };
     let recorded = options.recorded(&reference, &low, frame)?;
-    let mut found = None;
-    if let Some(cell) = &framed {
-        let angle = Measure::Angle(cell);
-        let bound = match recorded {
-            Some(pairs) => surface::measure(pairs, &Given, angle, effort, terminal)?,
-            None => measured(angle)?,
-        };
-        let claims = options.heuristics.then(|| {
-            heuristics::claims(own.in_frame_units(), other.in_frame_units(), &nearest, cell)
-        });
-        if let Some(folder) = &options.pictures {
-            pictures::write(
-                folder,
-                options.size,
-                [&own, &other],
-                &bound,
-                frame,
-                terminal,
-            )?;
+    let found = match &framed {
+        None => None,
+        Some(cell) => {
+            let angle = Measure::Angle(cell);
+            let bound = match recorded {
+                Some(pairs) => surface::measure(pairs, &Given, angle, effort, terminal)?,
+                None => measured(angle)?,
+            };
+            let claims = options.heuristics.then(|| {
+                heuristics::claims(own.in_frame_units(), other.in_frame_units(), &nearest, cell)
+            });
+            if let Some(folder) = &options.pictures {
+                let meshes = [&own, &other];
+                pictures::write(folder, options.size, meshes, &bound, frame, terminal)?;
+            }
+            let recorded = options.correspondence.is_some();
+            Some(Found::new(&bound, claims, frame, recorded))
         }
-        found = Some(Found::new(
-            &bound,
-            claims,
-            frame,
-            options.correspondence.is_some(),
-        ));
-    }
+    };
     let switch = aperture
         .map(|aperture| {
             let bound = measured(Measure::Distance)?;
@@ -161,27 +153,7 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
             Ok::<_, Error>(switch_args::Found::new(distance, aperture))
         })
         .transpose()?;
-    report(
-        common,
-        "bound",
-        serde_json::json!({
-            "reference": options.reference, "low": options.low, "cell": cell,
-            "correspondence": options.correspondence, "precision": options.precision,
-            "pieces": options.pieces, "pictures": options.pictures, "size": options.size,
-            "heuristics": options.heuristics, "switch": options.switch,
-        }),
-        Sections {
-            found: found.as_ref(),
-            switch: switch.as_ref(),
-        },
-    )?;
-    if let Some(found) = &found {
-        found.tell();
-    }
-    if let Some(switch) = &switch {
-        switch.tell();
-    }
-    Ok(Verdict::Good)
+    options.tell(cell.as_ref(), found.as_ref(), switch.as_ref(), common)
 }
 
 #[derive(Debug, serde::Serialize)]
@@ -201,6 +173,34 @@ impl BoundArgs {
             )));
         }
         Ok(())
+    }
+
+    /// Writes the report and prints the findings.
+    fn tell(
+        &self,
+        cell: Option<&ViewCell>,
+        found: Option<&Found>,
+        switch: Option<&switch_args::Found>,
+        common: &Common,
+    ) -> Result<Verdict> {
+        report(
+            common,
+            "bound",
+            serde_json::json!({
+                "reference": self.reference, "low": self.low, "cell": cell,
+                "correspondence": self.correspondence, "precision": self.precision,
+                "pieces": self.pieces, "pictures": self.pictures, "size": self.size,
+                "heuristics": self.heuristics, "switch": self.switch,
+            }),
+            Sections { found, switch },
+        )?;
+        if let Some(found) = found {
+            found.tell();
+        }
+        if let Some(switch) = switch {
+            switch.tell();
+        }
+        Ok(Verdict::Good)
     }
 
     /// The recorded map in units of `frame`, where there is one.

@@ -1,4 +1,4 @@
-//! From which distance a replacement may be shown.
+//! The distance from which on a replacement may be shown.
 
 use crate::{
     Result,
@@ -8,7 +8,7 @@ use crate::{
     },
 };
 
-/// When a viewer may be shown LOW instead of REF.
+/// The tolerance of a viewer who is shown LOW instead of REF.
 #[derive(Clone, Debug, clap::Args, serde::Serialize)]
 pub(super) struct SwitchArgs {
     /// Say from which distance on LOW is seen less than this off REF, in degrees

@@ -31,7 +31,7 @@ enum Image {
 struct Judgement<'a> {
     candidate: &'a Path,
     equal: bool,
-    /// Where and how much.
+    /// Place and size of the differences.
     comparison: ImageComparison,
     /// Of luma, in levels; null for numbers and where sizes differ.
     rms: Option<f64>,

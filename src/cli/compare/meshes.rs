@@ -36,7 +36,7 @@ pub(super) struct FileShape<'a> {
 #[derive(Serialize)]
 pub(super) struct Judgement<'a> {
     pub(super) candidate: FileShape<'a>,
-    /// Whether the files hold the same mesh.
+    /// True where the files hold the same mesh.
     pub(super) equal: bool,
     #[serde(flatten)]
     pub(super) errors: ErrorReport,

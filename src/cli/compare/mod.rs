@@ -116,7 +116,7 @@ impl CompareArgs {
         (!self.no_distance).then(|| self.distance_samples.unwrap_or(DEFAULT_SAMPLES))
     }
 
-    /// Whether any picture is asked for.
+    /// True where any picture is asked for.
     fn pictured(&self) -> bool {
         self.difference.is_some() || self.red_differences.is_some()
     }
@@ -125,7 +125,7 @@ impl CompareArgs {
         self.difference_scale.unwrap_or(2)
     }
 
-    /// Whether what was asked for holds for a candidate; `rms` is `None` where there is none.
+    /// True where the demands hold for a candidate; `rms` is `None` where there is none.
     fn holds(&self, equal: bool, rms: Option<f64>) -> bool {
         let near = |limit: f64| rms.is_some_and(|rms| rms <= limit);
         (equal || !self.equal) && self.max_rms.is_none_or(near)

@@ -23,7 +23,7 @@ pub(super) struct Level {
     /// Triangles to reach.
     pub(super) target: usize,
     pub(super) triangles: usize,
-    /// Whether they are no more than the target.
+    /// True where they are no more than the target.
     pub(super) reached: bool,
     /// Zhang & Turk 2002, equation 5.11, in levels.
     pub(super) image_error: f64,

@@ -19,7 +19,7 @@ use crate::{
     collapse::{Schedule, Topology},
     encode::atomic,
     io,
-    mesh::{self, content_sha256},
+    mesh::content_sha256,
     simplify::{
         MethodName, MethodOptions, Options as RunOptions, Stop, Target,
         image::{Comparison, PolishCounters},
@@ -64,7 +64,7 @@ pub(super) struct SimplifyArgs {
     /// The rule that orders the collapses
     #[arg(long, value_enum, default_value_t = MethodName::Image)]
     method: MethodName,
-    /// When edges are evaluated again; eager is slow and for comparison [default: by preset]
+    /// The schedule by which edges are evaluated again; eager is slow and for comparison [default: by preset]
     #[arg(long, value_enum, hide_short_help = true)]
     evaluation: Option<Schedule>,
     /// Measure the true rank of every K-th collapse among all legal ones; slow, changes no result
@@ -175,18 +175,10 @@ pub(super) fn run(
     let mesh = input::read(&options.input, !options.no_weld, terminal)?;
     input::require_triangles(&options.input, &mesh)?;
     let triangles_in = mesh.triangles().len();
-    let canonical = mesh::canonical(&mesh);
-    drop(mesh);
-    if canonical.degenerate > 0 {
-        terminal.say(&format!(
-            "{}: left out {} triangles that use a vertex twice",
-            options.input.display(),
-            canonical.degenerate
-        ));
-    }
-    let outcome = match options.guidance.read(&canonical.mesh)? {
-        Some(visibility) => simplify_guided(&canonical.mesh, &resolved, &visibility, terminal)?,
-        None => simplify_with(&canonical.mesh, &resolved, terminal)?,
+    let mesh = input::canonical(&options.input, mesh, terminal);
+    let outcome = match options.guidance.read(&mesh)? {
+        Some(visibility) => simplify_guided(&mesh, &resolved, &visibility, terminal)?,
+        None => simplify_with(&mesh, &resolved, terminal)?,
     };
     run_log::tell(&options.input, triangles_in, &outcome, terminal);
     let bounded = matches!(
@@ -207,7 +199,7 @@ pub(super) fn run(
         let bytes = outcome.history.to_bytes();
         atomic::write(path, |file: &mut dyn Write| file.write_all(&bytes))?;
     }
-    options.view_bound.write(&canonical.mesh, &outcome)?;
+    options.view_bound.write(&mesh, &outcome)?;
     let summary = Summary {
         input: &options.input,
         output: &options.output,

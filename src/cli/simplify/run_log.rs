@@ -1,54 +1,22 @@
-//! What a run of simplification says about itself: its phases, what is guaranteed, and how it ended.
+//! The log of a run of simplification on stderr: its phases, guarantees and end.
 
 use std::path::Path;
 
 use crate::{
     cli::terminal::Terminal,
-    simplify::{Outcome, Stop},
+    simplify::{Outcome, Phase, Stop, image::PolishCounters},
 };
 
-/// Says how it ended, in particular where that is short of the target.
+/// Prints phases, guarantees and the way the run ended, in particular where that is short of the target.
 pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
     for phase in &outcome.phases {
-        let c = &phase.counters;
-        terminal.say(&format!(
-            "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
-            phase.method,
-            phase.triangles_in,
-            phase.triangles_out,
-            c.collapses,
-            c.evaluations,
-            c.evaluations_if_eager
-        ));
-        if !c.ranks.is_empty() {
-            let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
-            terminal.say(&format!(
-                "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
-                phase.method,
-                100.0 * mean,
-                c.ranks.len()
-            ));
-        }
+        tell_phase(phase, terminal);
     }
     if let Some(v) = outcome.v_mesh() {
         terminal.say(&format!("visibility of the input: {v:.4}"));
     }
     if let Some(polish) = outcome.polish() {
-        terminal.say(&format!(
-            "polish: {} moves, {} flips; {} evaluations",
-            polish.moves, polish.flips, polish.evaluations
-        ));
-        for (i, [before, after]) in polish.cameras.iter().enumerate() {
-            let before_that = if i == 0 {
-                ""
-            } else {
-                ", which had driven nothing"
-            };
-            terminal.say(&format!(
-                "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
-                i + 1
-            ));
-        }
+        tell_polish(polish, terminal);
     }
     if let Some(rms) = outcome.error_rms() {
         terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
@@ -72,6 +40,50 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             if g.two_sided { ", nor back" } else { "" }
         ));
     }
+    tell_stop(input, triangles_in, outcome, terminal);
+}
+
+fn tell_phase(phase: &Phase, terminal: &Terminal) {
+    let c = &phase.counters;
+    terminal.say(&format!(
+        "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
+        phase.method,
+        phase.triangles_in,
+        phase.triangles_out,
+        c.collapses,
+        c.evaluations,
+        c.evaluations_if_eager
+    ));
+    if !c.ranks.is_empty() {
+        let mean = c.ranks.iter().sum::<f64>() / c.ranks.len() as f64;
+        terminal.say(&format!(
+            "{}: collapsed edges ranked at {:.3} % of the legal ones on average ({} measured)",
+            phase.method,
+            100.0 * mean,
+            c.ranks.len()
+        ));
+    }
+}
+
+fn tell_polish(polish: &PolishCounters, terminal: &Terminal) {
+    terminal.say(&format!(
+        "polish: {} moves, {} flips; {} evaluations",
+        polish.moves, polish.flips, polish.evaluations
+    ));
+    for (i, [before, after]) in polish.cameras.iter().enumerate() {
+        let before_that = if i == 0 {
+            ""
+        } else {
+            ", which had driven nothing"
+        };
+        terminal.say(&format!(
+            "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",
+            i + 1
+        ));
+    }
+}
+
+fn tell_stop(input: &Path, triangles_in: usize, outcome: &Outcome, terminal: &Terminal) {
     match &outcome.stop {
         Stop::TargetReached => {}
         Stop::TargetAboveInput => terminal.say(&format!(

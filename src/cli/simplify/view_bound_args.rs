@@ -81,7 +81,7 @@ impl ViewBoundArgs {
         ))
     }
 
-    /// The angle in degrees that so many pixels take up in the middle of the screen; elsewhere they take up less.
+    /// The angle in degrees that this many pixels take up in the middle of the screen; elsewhere they take up less.
     fn angle_of(&self, pixels: f64) -> Result<f64> {
         let fov = self.fov.unwrap_or(60.0);
         if !(fov > 0.0 && fov < 180.0) {

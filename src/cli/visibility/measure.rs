@@ -11,7 +11,7 @@ use crate::{
     cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
     encode::{atomic, npy},
     io,
-    mesh::{self, Mesh},
+    mesh::Mesh,
     visibility::{
         self, ConvergenceStep, MeasureOptions, PartialVisibility, Visibility, VisibilityTable,
         convergence, remove_hidden,
@@ -96,7 +96,7 @@ fn parse_range(text: &str) -> Result<Range<u32>, String> {
     Ok(number(start)?..number(end)?)
 }
 
-/// The number of subdivisions that give so many cameras.
+/// Parses a number of cameras into the number of subdivisions of the octahedron.
 pub(in crate::cli) fn parse_cameras(text: &str) -> Result<u32, String> {
     let known = [6, 18, 66, 258, 1_026, 4_098_u32];
     let found = text
@@ -155,16 +155,7 @@ pub(in crate::cli) fn run(
     };
     let mesh = input::read(&options.input, !options.no_weld, terminal)?;
     input::require_triangles(&options.input, &mesh)?;
-    let canonical = mesh::canonical(&mesh);
-    drop(mesh);
-    if canonical.degenerate > 0 {
-        terminal.say(&format!(
-            "{}: left out {} triangles that use a vertex twice",
-            options.input.display(),
-            canonical.degenerate
-        ));
-    }
-    let mesh = canonical.mesh;
+    let mesh = input::canonical(&options.input, mesh, terminal);
     input::require_triangles(&options.input, &mesh)?;
     let resolved = serde_json::json!({ "input": options.input, "measurement": measurement });
     if let (Some(range), Some(path)) = (&options.view_range, &options.partial) {

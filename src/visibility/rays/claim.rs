@@ -1,4 +1,4 @@
-//! Whether what a picture shows at a pixel can be true, within the tolerances.
+//! The claim of a picture at a pixel, tested against exact geometry within the tolerances.
 
 use super::{
     cast::RayCaster,
@@ -81,7 +81,7 @@ impl<'a> Pixel<'a> {
         Some(Outline::new(self.rays, self.ray, triangle))
     }
 
-    /// Whether the picture may show this triangle, or nothing.
+    /// True where the picture may show this triangle, or nothing.
     pub(super) fn check(&self, claim: Option<u32>) -> Result<(), Fault> {
         let Some(id) = claim else {
             return self.certain().map_or(Ok(()), |_| Err(Fault::Hole));

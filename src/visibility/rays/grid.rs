@@ -1,4 +1,4 @@
-//! Whether a view of a mesh is *grid-exact*: the transform needs no rounding, so that rays and rasterizer see the very
+//! The test whether a view of a mesh is *grid-exact*: the transform needs no rounding, so that rays and rasterizer see the very
 //! same triangles, and nothing may differ.
 //!
 //! Every corner of a triangle lies on the sub-pixel grid and its depth on a multiple of 2^-32, below 1, inside the

@@ -1,9 +1,9 @@
-//! Which triangles a ray may meet: a bounding-volume hierarchy of obvhs, used so that it can leave nothing out.
+//! The triangles that a ray may meet: a bounding-volume hierarchy of obvhs, used so that it can leave nothing out.
 //!
 //! obvhs computes in `f32`. So that rounding never hides a triangle, rays and boxes are brought into a frame of the
 //! hierarchy's own, in `f64`: the middle of the bounding box at the origin, every vertex within 0.87 of it. There a ray
 //! starts 2 before its point nearest to the origin, wherever the eye is; it meets triangles at t = 1 to 3.
-//! Boxes are larger by [`MARGIN`] on every side. What that must cover, in the same unit: the origin in `f32` 1.2e-7 per
+//! Boxes are larger by [`MARGIN`] on every side. The margin covers, in the same unit: the origin in `f32` 1.2e-7 per
 //! axis, the direction 1e-7 at t = 3, directions below 1.2e-7 that obvhs replaces 8e-7, subtraction, inversion and
 //! multiplication of the slab test 7.2e-7, corners of boxes 6e-8. Together below 1.9e-6, a quarter of the margin.
 //! A ray whose planes are so nearly parallel that `f64` does not say where it is has no [`Line`], and every triangle is
@@ -52,7 +52,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Where two planes `n . p + offset = 0` (in the frame of the hierarchy) meet; `None` where that is ill defined.
+    /// The point where two planes `n . p + offset = 0` (in the frame of the hierarchy) meet; `None` where that is ill defined.
     pub(super) fn new([a, b]: [(DVec3, f64); 2]) -> Option<Self> {
         let (size_a, size_b) = (length(a.0), length(b.0));
         let (normal_a, normal_b) = (unit(a.0)?, unit(b.0)?);

@@ -1,4 +1,4 @@
-//! Whether a ray meets a triangle, and at which depth: our own intersector, in exact arithmetic.
+//! The intersection of a ray and a triangle, and its depth: our own intersector, in exact arithmetic.
 //!
 //! The ray through the centre of pixel (x, y) is where two planes meet, that of its column, `A = W X - (2x + 1 - W) w`,
 //! and that of its row, `B = H Y - (H - 2y - 1) w`, with X, Y, w the clip coordinates: linear in world space, without a
@@ -227,13 +227,13 @@ impl<'a> Rays<'a> {
         let a = normal(&self.matrix[axis]) * size as f64;
         let b = normal(&self.matrix[3]) * factor as f64;
         let plane = a - b;
-        // What cancels leaves too few digits.
+        // Cancellation leaves too few digits.
         let sound = plane.dot(plane) > 1e-8 * (a.dot(a) + b.dot(b));
         let offset = &(&center[axis] * &size.into()) - &(&center[3] * &factor.into());
         sound.then(|| (plane, offset.approximate()))
     }
 
-    /// Whether a triangle is counter-clockwise as the viewer sees it, up to rounding.
+    /// True where a triangle is counter-clockwise as the viewer sees it, up to rounding.
     pub(super) fn is_front(&self, triangle: [u32; 3]) -> bool {
         let [a, b, c] = triangle.map(|v| {
             let [x, y, _, w] = &self.points[v as usize];
@@ -242,7 +242,7 @@ impl<'a> Rays<'a> {
         a.dot(b.cross(c)) > 0.0
     }
 
-    /// Where a triangle is hit, if it is: exact.
+    /// The exact place where a triangle is hit, if it is.
     #[inline]
     pub(super) fn hit(&self, ray: Ray, triangle: [u32; 3]) -> Option<Hit> {
         let [column, row] = [ray.column, ray.row].map(|n| Rounded::exactly(n as f64));

@@ -2,4 +2,5 @@
 
 pub(crate) mod appearance;
 mod pictures;
+mod report;
 mod surface;
