@@ -117,6 +117,27 @@ impl Projection {
         })
     }
 
+    /// A point of the cell's frame, across and along the direction.
+    #[inline(always)]
+    fn turned(&self, p: DVec2) -> DVec2 {
+        let d = self.direction;
+        DVec2::new(p.x * d.y - p.y * d.x, p.x * d.x + p.y * d.y)
+    }
+
+    /// The way along the direction to the nearest of `offsets` from points within `spread` of the offset of `at`, and its
+    /// sense; `None` where they are there. Points may go any part of the way that they may go: the nearest decides.
+    #[inline(always)]
+    fn way_to(&self, offsets: Interval, at: DVec2, spread: f64) -> Option<(f64, f64)> {
+        let own = self.own(at);
+        let low = (offsets.min - self.offset) / self.scale - own - spread;
+        let high = (offsets.max - self.offset) / self.scale - own + spread;
+        if low > 0.0 {
+            Some((low, 1.0))
+        } else {
+            (high < 0.0).then_some((-high, -1.0))
+        }
+    }
+
     /// The offset of a point given across and along the direction, along the direction.
     #[inline(always)]
     fn own(&self, p: DVec2) -> f64 {
@@ -130,9 +151,7 @@ impl Projection {
     #[must_use]
     pub fn interval(&self, a: DVec2, b: DVec2) -> Interval {
         let (m, n) = (self.cell.enter(a), self.cell.enter(b));
-        let d = self.direction;
-        let view = |p: DVec2| DVec2::new(p.x * d.y - p.y * d.x, p.x * d.x + p.y * d.y);
-        let (from, to) = (view(m), view(n));
+        let (from, to) = (self.turned(m), self.turned(n));
         let face = Face {
             from,
             to,
@@ -158,19 +177,8 @@ impl Projection {
     #[must_use]
     pub fn may_reach(&self, p: DVec2, offsets: Interval) -> bool {
         let local = self.cell.enter(p);
-        let d = self.direction;
-        let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
-        let own = self.own(at);
-        let (low, high) = (
-            (offsets.min - self.offset) / self.scale - own,
-            (offsets.max - self.offset) / self.scale - own,
-        );
-        // Points may go any part of the way that they may go: the nearest offset decides.
-        let (way, sense) = if low > 0.0 {
-            (low, 1.0)
-        } else if high < 0.0 {
-            (-high, -1.0)
-        } else {
+        let at = self.turned(local);
+        let Some((way, sense)) = self.way_to(offsets, at, 0.0) else {
             return true;
         };
         for end in self.ends.into_iter().flatten() {
@@ -204,19 +212,9 @@ impl Projection {
     pub fn may_reach_any(&self, disc: Disc, offsets: Interval) -> bool {
         let Disc { centre, radius } = disc;
         let local = self.cell.enter(centre);
-        let d = self.direction;
-        let at = DVec2::new(local.x * d.y - local.y * d.x, local.x * d.x + local.y * d.y);
-        let own = self.own(at);
+        let at = self.turned(local);
         let spread = radius * (1.0 + self.skew.abs());
-        let (low, high) = (
-            (offsets.min - self.offset) / self.scale - own - spread,
-            (offsets.max - self.offset) / self.scale - own + spread,
-        );
-        let (way, sense) = if low > 0.0 {
-            (low, 1.0)
-        } else if high < 0.0 {
-            (-high, -1.0)
-        } else {
+        let Some((way, sense)) = self.way_to(offsets, at, spread) else {
             return true;
         };
         let size = |p: DVec2| p.x.abs() + p.y.abs();
