@@ -51,7 +51,7 @@ impl Format {
         }
     }
 
-    /// The encoding that [`write()`] uses.
+    /// The encoding that [`write()`](super::write()) uses.
     #[must_use]
     pub const fn default_encoding(self) -> Encoding {
         match self {

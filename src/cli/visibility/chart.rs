@@ -25,7 +25,7 @@ pub(super) fn svg(steps: &[ConvergenceStep]) -> String {
         size: [720.0, 480.0],
         x: Axis {
             label: "cameras".into(),
-            range: [4.0, 6_000.0],
+            range: [4.0, 8_000.0],
             scale: Scale::Logarithmic,
         },
         left: Axis::from_zero("mean |V(t) - V'(t)| over the surface", highest),
