@@ -1,13 +1,13 @@
 //! The rasterizer: exact, integer, and the same for every order in which triangles arrive.
 //!
-//! A vertex is transformed in `f64`, snapped to sub-pixel integers ([`Projector`]), and from there on
-//! everything is integer: edge functions, the top-left rule, scanline spans by exact division, depth by exact
-//! division. A pixel is the minimum over `(depth, triangle id)`. Shading happens per triangle or per vertex in `f64`
-//! with `+ - * / sqrt` and becomes an 8-bit level before images are compared.
+//! A vertex is transformed in `f64`, snapped to sub-pixel integers ([`Projector`]), and from there on everything is
+//! integer: edge functions, the top-left rule, scanline spans by exact division, depth by exact division. A sample shows
+//! the least [`SampleKey`]: the minimum over depth and id. Shading happens per triangle or per vertex in `f64` with
+//! `+ - * / sqrt` and becomes an 8-bit level before images are compared.
 //!
-//! Whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them. Pictures that follow a change of the mesh:
-//! [`Unrender`], with the published method in [`BucketEngine`] and the fast one
-//! in [`LayerEngine`].
+//! `draw` makes whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them. `unrender` lets pictures follow
+//! the edits of a mesh ([`Unrender`], [`SceneEdit`]): the published method is [`BucketEngine`], the fast one
+//! [`LayerEngine`].
 
 mod draw;
 mod pixel_rect;

@@ -7,7 +7,6 @@
 //! see much the same, and every part should have as much to do for a change as any other.
 
 mod change_set;
-mod commit;
 mod fragment_lists;
 mod hi_z;
 mod probe;
@@ -70,7 +69,8 @@ struct Part {
     views: Vec<LayerView>,
     /// Their indices in the set.
     indices: Vec<usize>,
-    lanes: Projected,
+    /// All vertices on the screens of these views.
+    vertices: Projected,
     /// Gouraud shading: intensities by vertex and view.
     intensities: Vec<f64>,
     /// Samples that show a triangle, by triangle and view.
@@ -85,7 +85,7 @@ impl Part {
         let count = views.len();
         let shaded = views.iter().any(LayerView::is_shaded);
         let mut part = Self {
-            lanes: Projected::new(count, model.positions.len(), shaded),
+            vertices: Projected::new(count, model.positions.len(), shaded),
             intensities: Vec::new(),
             counts: vec![0; model.corners.len() * count],
             seen: vec![0; model.corners.len()],
@@ -93,7 +93,7 @@ impl Part {
             indices,
         };
         for (v, &position) in model.positions.iter().enumerate() {
-            part.lanes
+            part.vertices
                 .project(v, position, part.views.iter().map(|view| &view.projector));
         }
         if part.views.iter().any(LayerView::is_gouraud) {
@@ -137,14 +137,14 @@ impl Part {
         }
         fresh.clear(self.views.len());
         for &v in &changes.rim {
-            fresh.add(&self.lanes, v as usize);
+            fresh.add(&self.vertices, v as usize);
         }
         for &entry in &changes.moved {
             fresh.add(moved, entry as usize);
         }
         all.copy(fresh);
         for &v in &changes.inside {
-            all.add(&self.lanes, v as usize);
+            all.add(&self.vertices, v as usize);
         }
         let seen = changes.gone.iter().map(|&id| self.seen[id as usize]);
         seen.fold(0, |all, bits| all | bits)
@@ -168,7 +168,7 @@ impl Part {
                 model,
                 edit,
                 changes,
-                lanes: &self.lanes,
+                vertices: &self.vertices,
                 moved: &scratch.moved,
                 intensities: &self.intensities,
                 fresh: &scratch.fresh,
@@ -198,7 +198,7 @@ impl Part {
                 model,
                 edit,
                 changes,
-                lanes: &self.lanes,
+                vertices: &self.vertices,
                 moved: &scratch.moved,
                 intensities: &self.intensities,
                 fresh: &scratch.fresh,
@@ -222,7 +222,7 @@ impl Part {
             }
         }
         for (entry, &(v, _)) in edit.moved.iter().enumerate() {
-            self.lanes.copy(v as usize, &scratch.moved, entry);
+            self.vertices.copy(v as usize, &scratch.moved, entry);
         }
         if !self.intensities.is_empty() {
             for &(v, normal) in &edit.normals {

@@ -165,7 +165,7 @@ impl LayerView {
         for face in &context.changes.fresh {
             let corners = face.corners.map(|c| match c.moved() {
                 Some(entry) => context.moved.corner(entry, context.lane),
-                None => context.lanes.corner(c.vertex as usize, context.lane),
+                None => context.vertices.corner(c.vertex as usize, context.lane),
             });
             if let [Some(a), Some(b), Some(c)] = corners {
                 match SmallTriangle::fit([a, b, c], bits, self.view.cull, image) {

@@ -139,9 +139,9 @@ impl ScreenBoxes {
 
     /// Adds a vertex.
     #[inline]
-    pub(super) fn add(&mut self, lanes: &Projected, vertex: usize) {
-        let n = lanes.lanes;
-        let run = &lanes.places[vertex * 3 * n..][..3 * n];
+    pub(super) fn add(&mut self, vertices: &Projected, vertex: usize) {
+        let n = vertices.lanes;
+        let run = &vertices.places[vertex * 3 * n..][..3 * n];
         let (x, rest) = run.split_at(n);
         let (y, depth) = rest.split_at(n);
         let least = |list: &mut [i32], values: &[i32]| {

@@ -22,7 +22,7 @@ pub(super) struct ProbeContext<'a> {
     pub(super) edit: &'a SceneEdit,
     pub(super) changes: &'a ChangeSet,
     /// Vertices as they are, and those that move as they will be.
-    pub(super) lanes: &'a Projected,
+    pub(super) vertices: &'a Projected,
     pub(super) moved: &'a Projected,
     /// Intensities by vertex and view; empty without Gouraud shading.
     pub(super) intensities: &'a [f64],
@@ -231,9 +231,8 @@ impl LayerView {
             context.intensities.get(at).copied().unwrap_or(0.0)
         });
         Face {
-            positions: corners.map(|v| model.positions[v as usize]),
-            screen: corners.map(|v| context.lanes.screen(v as usize, context.lane)),
             paint: self.paint_now(model, id, intensities),
+            ..self.flat_face(context, id)
         }
     }
 
@@ -256,12 +255,8 @@ impl LayerView {
             Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
         };
         Face {
-            positions: face.positions,
-            screen: face.corners.map(|c| match c.moved() {
-                Some(entry) => context.moved.screen(entry, context.lane),
-                None => context.lanes.screen(c.vertex as usize, context.lane),
-            }),
             paint,
+            ..self.flat_face_after(context, face)
         }
     }
 
@@ -270,7 +265,7 @@ impl LayerView {
         let corners = context.model.corners[id as usize];
         Face {
             positions: corners.map(|v| context.model.positions[v as usize]),
-            screen: corners.map(|v| context.lanes.screen(v as usize, context.lane)),
+            screen: corners.map(|v| context.vertices.screen(v as usize, context.lane)),
             paint: Paint::Flat(0),
         }
     }
@@ -281,7 +276,7 @@ impl LayerView {
             positions: face.positions,
             screen: face.corners.map(|c| match c.moved() {
                 Some(entry) => context.moved.screen(entry, context.lane),
-                None => context.lanes.screen(c.vertex as usize, context.lane),
+                None => context.vertices.screen(c.vertex as usize, context.lane),
             }),
             paint: Paint::Flat(0),
         }
