@@ -28,7 +28,8 @@ fn no_property_test_writes_into_the_source_tree() {
     for (path, text) in sources {
         // Pieces of a string, so that this file holds none of what it looks for.
         for (at, start) in text.match_indices(concat!("proptest", "! {")) {
-            let first = text[at + start.len()..].trim_start().lines().next();
+            let mut lines = text[at + start.len()..].lines().map(str::trim);
+            let first = lines.find(|line| !line.is_empty() && !line.starts_with("//"));
             let first = first.unwrap_or_default();
             let config = first.strip_prefix("#![proptest_config(");
             // `cases` and `bounded` of this room turn off the file in which failures would be kept.
