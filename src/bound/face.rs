@@ -12,7 +12,7 @@ use super::{
     planar::{Aperture, Interval, tangents},
     view_cell::{Shape, ViewCell},
 };
-use crate::num::math;
+use crate::num::{Each, math};
 
 /// Offsets of valid planes, and what they are worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ pub fn conservative_interval(
 fn rates(normal: DVec3, direction: DVec3, aperture: Aperture) -> [f64; 2] {
     let up = direction.dot(normal);
     let flat = math::length(direction - normal * up);
-    [-1.0, 1.0].map(|sign| {
+    [-1.0, 1.0].each(|sign| {
         let turned = DVec2::new(flat, sign * up);
         let limits = tangents(turned, aperture).into_iter().flatten();
         limits.fold(f64::INFINITY, |least, t| least.min(t.length))
@@ -113,7 +113,7 @@ fn beside_plane(
     aperture: Aperture,
 ) -> Interval {
     let [[against, along], [against_below, along_below]] =
-        [normal, -normal].map(|n| rates(n, direction, aperture));
+        [normal, -normal].each(|n| rates(n, direction, aperture));
     let limit = |p: DVec3, height: f64| {
         let rho = p.dot(direction);
         let (down, up) = if height < 0.0 {
@@ -136,7 +136,7 @@ fn on_either_side(
     corners: &[DVec3; 3],
     limit: impl Fn(DVec3, f64) -> Interval,
 ) -> Interval {
-    let heights = corners.map(|p| (p - point).dot(normal));
+    let heights = corners.each(|p| (p - point).dot(normal));
     let mut all = Interval::ALL;
     for i in 0..3 {
         let j = (i + 1) % 3;

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::{point::error, surface::Replacement, view_cell::ViewCell};
 use crate::{
     mesh::{Edge, Edges, Mesh},
+    num::Each,
     parallel,
 };
 
@@ -65,5 +66,5 @@ pub fn claims(
 
 /// Both zeros are one.
 fn bits(p: DVec3) -> [u64; 3] {
-    p.to_array().map(|x| (x + 0.0).to_bits())
+    p.to_array().each(|x| (x + 0.0).to_bits())
 }

@@ -16,7 +16,10 @@ use glam::DVec3;
 use super::{point::error, view_cell::ViewCell};
 use crate::{
     Progress, Result,
-    num::math::{asin, length},
+    num::{
+        Each,
+        math::{asin, length},
+    },
     parallel,
 };
 
@@ -49,7 +52,7 @@ impl Pair {
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         };
         let (from, to) = (cut(self.from), cut(self.to));
-        [0, 1, 2, 3].map(|i| Self {
+        [0, 1, 2, 3].each(|i| Self {
             from: from[i],
             to: to[i],
             triangle: self.triangle,
@@ -57,13 +60,13 @@ impl Pair {
     }
 
     fn displacements(&self) -> [DVec3; 3] {
-        [0, 1, 2].map(|i| self.to[i] - self.from[i])
+        [0, 1, 2].each(|i| self.to[i] - self.from[i])
     }
 
     /// The longest displacement of all its points: that of a corner.
     fn longest(&self) -> f64 {
         self.displacements()
-            .map(length)
+            .each(length)
             .into_iter()
             .fold(0.0, f64::max)
     }
@@ -191,7 +194,7 @@ pub fn measure(
         let parts: Vec<(Pair, u8)> = open
             .iter()
             .filter(|j| cut(j))
-            .flat_map(|j| j.pair.quarters().map(|pair| (pair, j.depth + 1)))
+            .flat_map(|j| j.pair.quarters().each(|pair| (pair, j.depth + 1)))
             .collect();
         if parts.is_empty() || spent + parts.len() as u64 > effort.pieces {
             break;

@@ -15,6 +15,7 @@ use crate::{
     encode::atomic,
     io,
     mesh::{Mesh, MeshParts},
+    num::Each,
 };
 
 /// Draw where a point may move before a viewer in a view cell sees it move by more than an angle
@@ -171,10 +172,10 @@ impl Trace {
 
     /// The ends of the line, `far` lengths of its direction away, and with them those of the side of the viewers.
     fn corners(&self, far: f64) -> Vec<[f64; 2]> {
-        let ends = [-far, far].map(|t| [0, 1].map(|k| self.foot[k] + self.along[k] * t));
+        let ends = [-far, far].each(|t| [0, 1].each(|k| self.foot[k] + self.along[k] * t));
         let mut all = ends.to_vec();
         if let Some(inward) = self.inward {
-            let beyond = |end: [f64; 2]| [0, 1].map(|k| end[k] + inward[k] * 2.0 * far);
+            let beyond = |end: [f64; 2]| [0, 1].each(|k| end[k] + inward[k] * 2.0 * far);
             all.extend([beyond(ends[1]), beyond(ends[0])]);
         }
         all
@@ -249,7 +250,7 @@ impl Page {
 
     fn place(&self, p: [f64; 2]) -> [f64; 2] {
         let scale = 760.0 / self.span;
-        [0, 1].map(|axis| 20.0 + (p[axis] - self.low[axis]) * scale)
+        [0, 1].each(|axis| 20.0 + (p[axis] - self.low[axis]) * scale)
     }
 
     fn path(&self, points: &[[f64; 2]]) -> String {
@@ -298,7 +299,7 @@ fn together(meshes: Vec<Mesh>) -> Result<Mesh> {
         let parts = mesh.into_parts();
         let first = all.positions.len() as u32;
         all.positions.extend(parts.positions);
-        let moved = parts.triangles.iter().map(|t| t.map(|v| v + first));
+        let moved = parts.triangles.iter().map(|t| t.each(|v| v + first));
         all.triangles.extend(moved);
         all.precision = parts.precision;
     }

@@ -13,6 +13,7 @@ use crate::{
     },
     encode::bytes,
     mesh::{self, Mesh},
+    num::Each,
 };
 
 /// Check a guaranteed error by independent samples and proofs; exit code 1 where a point breaks it
@@ -228,7 +229,7 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
     }
     if let Some(w) = &found.worst {
         let [p, s, v] = [w.point, w.replacement, w.viewpoint]
-            .map(|p| format!("({}, {}, {})", p[0], p[1], p[2]));
+            .each(|p| format!("({}, {}, {})", p[0], p[1], p[2]));
         answer!(
             "{} sightings, the largest angle {:.9} degrees: on triangle {} {p} and {s} seen from {v}",
             found.sightings,

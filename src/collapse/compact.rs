@@ -4,6 +4,7 @@ use super::{LiveMesh, NONE};
 use crate::{
     Error, Result,
     mesh::{Attributes, Materials, Mesh, MeshParts},
+    num::Each,
 };
 
 impl LiveMesh {
@@ -67,5 +68,5 @@ fn compacted(
     for (i, &v) in used.iter().enumerate() {
         new[v as usize] = i as u32;
     }
-    (triples.map(|t| t.map(|v| new[v as usize])).collect(), used)
+    (triples.map(|t| t.each(|v| new[v as usize])).collect(), used)
 }

@@ -5,7 +5,7 @@
 //! Shape: the new faces turn from both old ones by no more than a collapse may turn a face, and are not degenerate.
 
 use super::{LiveMesh, Patch, PatchFace, Refusal, Rules, legality, wedge};
-use crate::mesh::ChannelKind;
+use crate::{mesh::ChannelKind, num::Each};
 
 /// Fills `patch` with the flip of the edge `ends`, where the rules allow it.
 ///
@@ -32,7 +32,7 @@ pub fn flip(
         return Err(Refusal::Link);
     };
     let at =
-        |face: &PatchFace| ends.map(|v| face.corners.iter().position(|&c| c == v).unwrap_or(0));
+        |face: &PatchFace| ends.each(|v| face.corners.iter().position(|&c| c == v).unwrap_or(0));
     let faces = [(f.id, f.wedges), (g.id, g.wedges)];
     if wedge::differ(live, faces, [at(&f), at(&g)], |_| true) {
         return Err(Refusal::FeaturePinch);
@@ -66,7 +66,7 @@ pub fn check_uv_orientation(live: &LiveMesh, patch: &Patch) -> Result<(), Refusa
             [row[channel.offset], row[channel.offset + 1]]
         };
         let area = |face: &PatchFace| {
-            let [a, b, c] = face.wedges.map(value);
+            let [a, b, c] = face.wedges.each(value);
             (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         };
         let turned = patch

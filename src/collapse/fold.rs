@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{EdgeStar, LiveMesh, Patch, PatchFace, Refusal, Rules, edge_star::normal};
-use crate::num::math::sqrt;
+use crate::num::{Each, math::sqrt};
 
 /// Tests the edges that a patch, not yet committed, makes or changes.
 ///
@@ -67,7 +67,7 @@ pub fn is_folded(live: &LiveMesh, edge: u32, cosine: f64) -> bool {
     let mut faces = live.triangles_at(side[0]).filter_map(|id| {
         let corners = live.triangle(id)?;
         let forward = along(corners, side)?;
-        Some((normal(corners.map(|v| live.position(v))), forward))
+        Some((normal(corners.each(|v| live.position(v))), forward))
     });
     let (Some((a, first)), Some((b, second))) = (faces.next(), faces.next()) else {
         return false;
@@ -102,7 +102,7 @@ pub fn check_collapse_folds(
     let mut count = 0;
     for face in star.faces.iter().filter(|f| f.survives) {
         facets[count] = Facet {
-            corners: face.corners.map(|v| if v == w { u } else { v }),
+            corners: face.corners.each(|v| if v == w { u } else { v }),
             normal: normal(face.points_after(position)),
         };
         count += 1;
@@ -174,7 +174,7 @@ fn each_angle(
     if facets.len() > FEW {
         for (i, facet) in facets.iter().enumerate() {
             let [a, b, c] = facet.corners;
-            sides.extend([[a, b], [b, c], [c, a]].map(|side| (key(side), i)));
+            sides.extend([[a, b], [b, c], [c, a]].each(|side| (key(side), i)));
         }
         sides.sort_unstable();
     }
@@ -204,7 +204,7 @@ fn each_angle(
                 (!changed(id)).then_some((corners, forward))
             });
             if let (Some((corners, forward)), None) = (outside.next(), outside.next()) {
-                let other = normal(corners.map(|v| live.position(v)));
+                let other = normal(corners.each(|v| live.position(v)));
                 found(cosine(facet.normal, other, forward));
             }
         }

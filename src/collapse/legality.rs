@@ -13,6 +13,7 @@ use super::{
     EdgeStar, LiveMesh, Refusal,
     edge_star::{Anchor, normal},
 };
+use crate::num::Each;
 
 /// Treatment of the topology by collapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,7 +74,7 @@ pub fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<Anchor, 
         topology(star)?;
     }
     let feature = features(star, rules)?;
-    let locked = star.ends.map(|v| live.is_locked(v));
+    let locked = star.ends.each(|v| live.is_locked(v));
     match (locked, feature) {
         ([false, false], anchor) => Ok(anchor),
         ([true, false], Anchor::Free | Anchor::At(0)) => Ok(Anchor::At(0)),
@@ -117,7 +118,7 @@ fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
         return Ok(Anchor::Free);
     }
     let degree = star.feature_degree;
-    let corner = degree.map(|d| d != 0 && d != 2);
+    let corner = degree.each(|d| d != 0 && d != 2);
     if star.edge_feature {
         match corner {
             [false, false] => Ok(Anchor::Free),
@@ -126,7 +127,7 @@ fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
             [true, true] => Err(Refusal::FeatureCorner),
         }
     } else {
-        match degree.map(|d| d > 0) {
+        match degree.each(|d| d > 0) {
             [false, false] => Ok(Anchor::Free),
             [true, false] => Ok(Anchor::At(0)),
             [false, true] => Ok(Anchor::At(1)),

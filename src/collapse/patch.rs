@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use super::{LiveMesh, wedge::WedgeScratch};
+use crate::num::Each;
 
 /// A face of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,7 +146,7 @@ impl Patch {
     /// Corner positions of one of the `removed` faces, before or after the commit.
     #[must_use]
     pub fn before(&self, live: &LiveMesh, face: &PatchFace) -> [DVec3; 3] {
-        face.corners.map(|v| match self.moved {
+        face.corners.each(|v| match self.moved {
             Some(m) if m.vertex == v => m.from,
             _ => live.position(v),
         })
@@ -154,7 +155,7 @@ impl Patch {
     /// Corner positions of one of the `added` faces, before or after the commit.
     #[must_use]
     pub fn after(&self, live: &LiveMesh, face: &PatchFace) -> [DVec3; 3] {
-        face.corners.map(|v| match self.moved {
+        face.corners.each(|v| match self.moved {
             Some(m) if m.vertex == v => m.to,
             _ => live.position(v),
         })

@@ -16,7 +16,10 @@ use super::{
     legality::{self, STAR_LIMIT},
     pinch, wedge,
 };
-use crate::{mesh::ChannelKind, num::math};
+use crate::{
+    mesh::ChannelKind,
+    num::{Each, math},
+};
 
 /// Directions in which a vertex may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -99,7 +102,7 @@ impl Star {
     pub fn normal(&self, live: &LiveMesh) -> Option<DVec3> {
         let normals = self.faces.iter();
         let sum = normals
-            .map(|f| normal(f.corners.map(|v| live.position(v))))
+            .map(|f| normal(f.corners.each(|v| live.position(v))))
             .fold(DVec3::ZERO, |sum, n| sum + n);
         math::unit(sum)
     }
@@ -116,8 +119,8 @@ impl Star {
         }
         let to = live.round(to).ok_or(Refusal::Unplaced)?;
         for face in &self.faces {
-            let before = face.corners.map(|v| live.position(v));
-            let after = face.corners.map(|v| {
+            let before = face.corners.each(|v| live.position(v));
+            let after = face.corners.each(|v| {
                 if v == self.vertex {
                     to
                 } else {
@@ -187,13 +190,13 @@ impl Star {
                 if !others.all(|w| rows.same(channel, w, first)) {
                     continue;
                 }
-                let corners = face.wedges.map(|w| rows.value(channel, w));
+                let corners = face.wedges.each(|w| rows.value(channel, w));
                 if corners.iter().any(|c| c[0].is_nan()) {
                     continue;
                 }
                 let into = &mut self.values[channel.offset..][..channel.kind.width()];
                 for (i, x) in into.iter_mut().enumerate() {
-                    let [a, b, c] = corners.map(|v| v[i]);
+                    let [a, b, c] = corners.each(|v| v[i]);
                     let sum = (weights[0] * a + weights[1] * b) + weights[2] * c;
                     *x = sum.clamp(a.min(b).min(c), a.max(b).max(c));
                 }
@@ -226,7 +229,7 @@ impl Star {
     fn foot(&self, live: &LiveMesh, point: DVec3) -> Option<(PatchFace, [f64; 3])> {
         let mut best: Option<(f64, PatchFace, [f64; 3])> = None;
         for face in &self.faces {
-            let points = face.corners.map(|v| live.position(v));
+            let points = face.corners.each(|v| live.position(v));
             let weights = nearest(points, point);
             let [a, b, c] = points;
             let d = ((a * weights[0] + b * weights[1]) + c * weights[2]) - point;

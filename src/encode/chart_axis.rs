@@ -1,6 +1,6 @@
 //! Axes of charts, and the round numbers along them.
 
-use crate::num::math;
+use crate::num::{Each, math};
 
 /// Whether equal lengths of an axis are equal differences or equal ratios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl Axis {
             Scale::Linear => x,
             Scale::Logarithmic => math::log10(x),
         };
-        let [low, high] = self.range.map(place);
+        let [low, high] = self.range.each(place);
         (place(value) - low) / (high - low)
     }
 
@@ -64,8 +64,9 @@ impl Axis {
     fn linear_ticks(&self) -> Vec<Tick> {
         let [low, high] = self.range;
         let magnitude = math::log10((high - low) / MOST_TICKS).floor() as i32;
-        let mut steps = (magnitude..=magnitude + 1)
-            .flat_map(|exponent| [1.0, 2.0, 5.0].map(|digit| (digit * ten_to(exponent), exponent)));
+        let mut steps = (magnitude..=magnitude + 1).flat_map(|exponent| {
+            [1.0, 2.0, 5.0].each(|digit| (digit * ten_to(exponent), exponent))
+        });
         let (step, exponent) = steps
             .find(|(step, _)| (high - low) / step <= MOST_TICKS)
             .unwrap_or((high - low, magnitude));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Encoding, Format, obj, ply, stl};
-use crate::{Error, Result, encode::atomic, mesh::Mesh};
+use crate::{Error, Result, encode::atomic, mesh::Mesh, num::Each};
 
 /// The bytes of `mesh` in an encoding, and notes about what it cannot keep.
 ///
@@ -40,7 +40,7 @@ pub fn write(path: &Path, mesh: &Mesh) -> Result<Vec<String>> {
 pub fn writable_format(path: &Path) -> Result<Format> {
     Format::of_extension(path).ok_or_else(|| {
         let known = Format::ALL
-            .map(|f| format!(".{}", f.extension()))
+            .each(|f| format!(".{}", f.extension()))
             .join(", ");
         Error::Usage(format!(
             "{}: no known format has this extension; expected one of {known}",

@@ -12,7 +12,7 @@ use super::{
     Attributes, ChannelKind, Materials, Mesh, MeshParts,
     group_equal::{compare_rows, group_equal},
 };
-use crate::parallel;
+use crate::{num::Each, parallel};
 
 /// A mesh in canonical order, with what was dropped on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,7 +144,7 @@ fn spread(x: u64) -> u64 {
 
 fn sorted_triangles(mesh: &Mesh, kept: &[usize], renumbered: &[u32]) -> Vec<Placed> {
     let mut triangles: Vec<Placed> = parallel::map_slice(kept, |&t| {
-        let mut vertices = mesh.triangles()[t].map(|v| renumbered[v as usize]);
+        let mut vertices = mesh.triangles()[t].each(|v| renumbered[v as usize]);
         let smallest = vertices[0].min(vertices[1]).min(vertices[2]);
         let rotation = vertices.iter().position(|&v| v == smallest).unwrap_or(0);
         vertices.rotate_left(rotation);
@@ -198,7 +198,7 @@ fn attributes(attributes: &Attributes, triangles: &[Placed]) -> Attributes {
         .iter()
         .flat_map(|t| {
             let wedges = wedges_of(attributes, t);
-            [0, 1, 2].map(|i| (t.vertices[i], wedges[i]))
+            [0, 1, 2].each(|i| (t.vertices[i], wedges[i]))
         })
         .collect();
     let united = group_equal(corners.len(), &|a, b| {

@@ -11,7 +11,10 @@ use serde::Serialize;
 use super::{
     Edge, Edges, Mesh, VertexTriangles, compare_rows, connectivity::Connectivity, group_equal,
 };
-use crate::{geometry::double_area, num::Frame};
+use crate::{
+    geometry::double_area,
+    num::{Each, Frame},
+};
 
 /// One kind of finding: how often it occurs and the first places where it does.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -241,7 +244,7 @@ impl Surface {
                 degenerate.add(&[t as u32]);
                 continue;
             }
-            let doubled = double_area(mesh.corners(t).map(|p| frame.enter(p)));
+            let doubled = double_area(mesh.corners(t).each(|p| frame.enter(p)));
             if doubled == 0.0 {
                 zero_area.add(&[t as u32]);
             }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Attributes, canonical, weld};
 use crate::{
     Error, Result,
-    num::{Frame, Precision},
+    num::{Each, Frame, Precision},
     parallel,
 };
 
@@ -163,7 +163,7 @@ impl Mesh {
                 triangles.len()
             )));
         };
-        let points = points.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+        let points = points.iter().map(|p| DVec3::from_array(p.each(f64::from)));
         let stored = Self::from_triangles(points.collect(), corners.to_vec())?;
         Ok(canonical(&weld(stored).mesh).mesh)
     }
@@ -235,7 +235,7 @@ impl Mesh {
     /// Where there is no such triangle.
     #[must_use]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|v| self.positions[v as usize])
+        self.triangles[triangle].each(|v| self.positions[v as usize])
     }
 
     /// Smallest and largest corner of the bounding box of the vertices that triangles use; `None` without triangles.

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::{Mesh, MeshParts};
-use crate::parallel;
+use crate::{num::Each, parallel};
 
 /// Cells along a side of the grid.
 const GRID: usize = 128;
@@ -44,7 +44,7 @@ impl Counts {
     /// Number of marked cells from one to another, both included.
     fn within(&self, a: [usize; 3], b: [usize; 3]) -> u32 {
         let below = |x: usize, y: usize, z: usize| self.0[Self::at(x, y, z)];
-        let [x, y, z] = b.map(|i| i + 1);
+        let [x, y, z] = b.each(|i| i + 1);
         let layers = |z: usize| {
             (below(x, y, z) + below(a[0], a[1], z)) - (below(a[0], y, z) + below(x, a[1], z))
         };
@@ -64,7 +64,7 @@ impl Mesh {
         let extent = (high - low).max_element();
         let cell = |p: DVec3| {
             let at = (p - low) * (GRID as f64 / extent);
-            at.to_array().map(|x| (x.max(0.0) as usize).min(GRID - 1))
+            at.to_array().each(|x| (x.max(0.0) as usize).min(GRID - 1))
         };
         let row = |a: [usize; 3], b: [usize; 3], y: usize, z: usize| {
             let start = (z * GRID + y) * GRID;
@@ -81,7 +81,7 @@ impl Mesh {
         }
         let counts = OnceLock::new();
         let touches = |face: &[u32; 3]| {
-            let [p, q, r] = face.map(|v| self.positions()[v as usize]);
+            let [p, q, r] = face.each(|v| self.positions()[v as usize]);
             let (a, b) = (cell(p.min(q).min(r)), cell(p.max(q).max(r)));
             if (b[2] - a[2] + 1) * (b[1] - a[1] + 1) > ROWS {
                 let counts = counts.get_or_init(|| Counts::of(&near));
@@ -106,7 +106,7 @@ impl Mesh {
             }
         }
         let renamed = |v: u32| renamed[v as usize];
-        let faces = faces.into_iter().map(|t| t.map(renamed)).collect();
+        let faces = faces.into_iter().map(|t| t.each(renamed)).collect();
         let parts = MeshParts {
             positions,
             triangles: faces,

@@ -7,7 +7,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Error, Result, raster::Grid};
+use crate::{Error, Result, num::Each, raster::Grid};
 
 /// A pixel that can be compared value by value.
 pub trait Pixel: Copy + PartialEq {
@@ -64,7 +64,7 @@ impl Levels for u8 {
 
 impl Levels for [u8; 3] {
     fn zip(self, other: Self, f: impl Fn(u8, u8) -> u8) -> Self {
-        [0, 1, 2].map(|c| f(self[c], other[c]))
+        [0, 1, 2].each(|c| f(self[c], other[c]))
     }
 }
 

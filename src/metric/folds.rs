@@ -13,7 +13,10 @@ use crate::{
     Progress, Result,
     geometry::{TriangleTree, area_normal},
     mesh::{Edges, FramedMesh, Mesh},
-    num::math::{length, sqrt},
+    num::{
+        Each,
+        math::{length, sqrt},
+    },
     parallel,
 };
 
@@ -149,7 +152,7 @@ fn corners(mesh: &FramedMesh) -> impl Iterator<Item = [DVec3; 3]> {
     let positions = mesh.positions();
     mesh.triangles()
         .iter()
-        .map(|t| t.map(|v| positions[v as usize]))
+        .map(|t| t.each(|v| positions[v as usize]))
 }
 
 /// The ends of the folded edges of a mesh.
@@ -163,7 +166,7 @@ fn folded(mesh: &FramedMesh) -> Vec<[DVec3; 2]> {
         // The normal of a face as if it ran along the edge from its first end to its second.
         let normal = |face: u32, forward: bool| {
             let t = mesh.triangles()[face as usize];
-            let [a, b, c] = t.map(|v| positions[v as usize]);
+            let [a, b, c] = t.each(|v| positions[v as usize]);
             let runs = (0..3).any(|k| [t[k], t[(k + 1) % 3]] == edge);
             let normal = area_normal([a, b, c]);
             if runs == forward { normal } else { -normal }
@@ -171,7 +174,7 @@ fn folded(mesh: &FramedMesh) -> Vec<[DVec3; 2]> {
         let (a, b) = (normal(first, true), normal(second, false));
         let (dot, size) = (a.dot(b), length(a) * length(b));
         if size > 0.0 && dot < FOLD_COSINE * size {
-            found.push(edge.map(|v| positions[v as usize]));
+            found.push(edge.each(|v| positions[v as usize]));
         }
     }
     found

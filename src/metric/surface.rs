@@ -21,7 +21,7 @@ use crate::{
     geometry::{Triangle, TriangleTree},
     mesh::Mesh,
     num::{
-        Frame,
+        Each, Frame,
         math::{length, scale_by_power_of_two, sqrt},
     },
     parallel,
@@ -258,7 +258,7 @@ impl Surface {
         let triangles: Vec<Triangle> = mesh
             .triangles()
             .iter()
-            .map(|t| Triangle::new(t.map(|v| positions[v as usize])))
+            .map(|t| Triangle::new(t.each(|v| positions[v as usize])))
             .collect();
         let tree = TriangleTree::of(triangles.clone()).ok_or_else(|| empty(which))?;
         Ok(Self {

@@ -12,6 +12,7 @@ use crate::{
         silhouette::silhouette_histogram,
         surface::{OneSided, surface_distance},
     },
+    num::Each,
     raster::{Grid, Scene, luma_sums},
     view::{self, Interpolation, Projection, Shading, ViewsName, frame_of},
 };
@@ -29,10 +30,10 @@ pub(super) fn compared(collector: &mut Collector) -> Result<()> {
         ..Shading::default()
     });
     let frame = frame_of(&reference);
-    let scenes = [&reference, &candidate].map(|m| Scene::of(&m.enter_frame(frame)));
+    let scenes = [&reference, &candidate].each(|m| Scene::of(&m.enter_frame(frame)));
     for (shading, set) in [("flat", &flat), ("gouraud", &gouraud)] {
         let set = set.enter_frame(frame);
-        let [expected, actual] = scenes.each_ref().map(|scene| {
+        let [expected, actual] = scenes.each_ref().each(|scene| {
             let views = set.views.iter();
             views
                 .map(|v| luma_sums(scene, v, &set))

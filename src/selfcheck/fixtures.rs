@@ -8,6 +8,7 @@ use crate::{
         sheet::{Style, Tile, sheet},
     },
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
+    num::Each,
     raster::{Scene, luma_sums, mean_luma},
     simplify::Outcome,
     view::{Cull, Sphere, View, ViewSet, frame_of},
@@ -24,7 +25,7 @@ pub(super) fn colored(mesh: &Mesh) -> Mesh {
     for p in mesh.positions() {
         // Steps of 1/64 in [0, 1]: exact in every file format.
         let channel = |x: f64| ((x * 0.25 + 0.5) * 64.0).floor().clamp(0.0, 64.0) / 64.0;
-        values.extend(p.to_array().map(channel));
+        values.extend(p.to_array().each(channel));
     }
     let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
         .expect("a row for every vertex");

@@ -10,7 +10,7 @@ use crate::{
     Error, Result,
     encode::png::Picture,
     mesh::{Mesh, generate},
-    num::fixed::SubpixelBits,
+    num::{Each, fixed::SubpixelBits},
     raster::{self, Grid, Scene},
     view::{
         self, Cull, Interpolation, Light, Projection, Shading, Specular, View, ViewSet, ViewsName,
@@ -117,7 +117,7 @@ fn named(mesh: &Mesh, name: &ViewsName, count: usize, size: u32) -> Result<ViewS
 
 /// A picture of 96 x 72 pixels from any place.
 fn from_eye(eye: [f64; 3], target: [f64; 3], depth: [f64; 2]) -> Result<ViewSet> {
-    let ends = [eye, target, [0.0, 0.0, 1.0]].map(DVec3::from_array);
+    let ends = [eye, target, [0.0, 0.0, 1.0]].each(DVec3::from_array);
     let view = View::perspective(ends, depth, [96, 72])
         .ok_or_else(|| Error::Internal("a golden view is degenerate".into()))?;
     Ok(ViewSet {

@@ -9,6 +9,7 @@ use crate::{
     Result, Silent,
     encode::png::Picture,
     mesh::{Mesh, generate},
+    num::Each,
     raster::{self, Scene},
     view::{Projection, ViewSet, frame_of, sets::octahedron},
     visibility::{
@@ -107,7 +108,7 @@ fn pictured(collector: &mut Collector, mesh: &Mesh, found: &Visibility) -> Resul
     let set = set.enter_frame(frame);
     let colors = found.triangles().iter().map(|&v| {
         let level = |x: u8| f64::from(x) / 255.0;
-        [color(v).map(level); 3]
+        [color(v).each(level); 3]
     });
     let scene = Scene::of(&mesh.enter_frame(frame)).with_colors(colors.collect());
     for view in &set.views {

@@ -21,7 +21,7 @@ use crate::{
         FoldReference, Orientation,
         folds::{FOLD_COSINE, REACH},
     },
-    num::math,
+    num::{Each, math},
     parallel,
 };
 
@@ -63,7 +63,7 @@ impl<'a> Nearby<'a> {
             Some([((a + b) + c) / 3.0; 2])
         });
         let edges = sharp.iter().filter_map(|&edge| {
-            let [a, b] = live.edge(edge)?.map(|v| live.position(v));
+            let [a, b] = live.edge(edge)?.each(|v| live.position(v));
             Some([(a + b) * 0.5; 2])
         });
         self.within(live, boxes.chain(edges), stride)
@@ -91,7 +91,7 @@ impl<'a> Nearby<'a> {
     ) -> FramedMesh {
         let frame = live.frame();
         let margin = DVec3::splat(self.reach);
-        let boxes = boxes.map(|[low, high]| [low - margin, high + margin].map(|p| frame.leave(p)));
+        let boxes = boxes.map(|[low, high]| [low - margin, high + margin].each(|p| frame.leave(p)));
         let part = self.original.near(&boxes.collect::<Vec<_>>(), stride);
         part.enter_frame(frame)
     }
@@ -104,7 +104,7 @@ impl Faults {
     /// Of `sharp` edges and the faces at them, the vertices of every folded edge's faces and of every flipped face.
     fn find(&self, live: &LiveMesh, sharp: &[u32]) -> Vec<Vec<u32>> {
         let is_new = |&e: &u32| {
-            let ends = live.edge(e).map(|ends| ends.map(|v| live.position(v)));
+            let ends = live.edge(e).map(|ends| ends.each(|v| live.position(v)));
             is_folded(live, e, FOLD_COSINE) && ends.is_some_and(|ends| self.0.is_new(ends))
         };
         let corners = |faces: Vec<u32>| {
@@ -249,10 +249,10 @@ impl Search {
         let areas = star
             .faces
             .iter()
-            .map(|f| double_area(f.corners.map(|v| live.position(v))));
+            .map(|f| double_area(f.corners.each(|v| live.position(v))));
         let area: f64 = areas.sum();
         let faces = star.faces.iter();
-        let flipped = faults.flipped(faces.map(|f| f.corners.map(|v| live.position(v))));
+        let flipped = faults.flipped(faces.map(|f| f.corners.each(|v| live.position(v))));
         let mut best: Option<(f64, DVec3)> = None;
         for step in STEPS {
             for direction in &directions {

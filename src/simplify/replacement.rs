@@ -6,6 +6,7 @@ use crate::{
     bound::surface::{Pair, Replacement},
     geometry::{TriangleTree, closest_point},
     mesh::Mesh,
+    num::Each,
 };
 
 /// A mesh as the replacement of another one: a part of the original goes to the triangle that is nearest to its
@@ -35,7 +36,7 @@ impl Replacement for NearestTriangle {
         };
         let (_, index) = self.tree.squared_distance(middle, 0);
         let corners = self.tree.corners(index);
-        Some(from.map(|p| closest_point(p, corners).0))
+        Some(from.each(|p| closest_point(p, corners).0))
     }
 }
 

@@ -20,7 +20,7 @@ use super::{
     sphere::{Sphere, usable_radius},
 };
 use crate::num::{
-    Frame,
+    Each, Frame,
     math::{self, scale_by_power_of_two},
 };
 
@@ -143,7 +143,7 @@ impl View {
         let unit = Frame::for_size(near).exponent;
         let row = |direction: DVec3, factor: f64, offset: f64| {
             let r = direction * factor;
-            [r.x, r.y, r.z, offset - r.dot(eye)].map(|m| scale_by_power_of_two(m, -unit))
+            [r.x, r.y, r.z, offset - r.dot(eye)].each(|m| scale_by_power_of_two(m, -unit))
         };
         let slope = far / (far - near);
         let forward = -basis.back;
@@ -191,8 +191,8 @@ impl View {
         let length = |x: f64| scale_by_power_of_two(x, exponent);
         let point = |p: DVec3| DVec3::new(length(p.x), length(p.y), length(p.z));
         Self {
-            matrix: self.matrix.map(|[x, y, z, offset]| {
-                let [x, y, z] = [x, y, z].map(|m| scale_by_power_of_two(m, -exponent));
+            matrix: self.matrix.each(|[x, y, z, offset]| {
+                let [x, y, z] = [x, y, z].each(|m| scale_by_power_of_two(m, -exponent));
                 [x, y, z, offset]
             }),
             eye: match self.eye {

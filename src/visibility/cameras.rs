@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::{Alignment, CameraWeights, MeasureOptions};
 use crate::{
     Error, Result,
-    num::math,
+    num::{Each, math},
     view::{
         Projection, Sphere, ViewSet,
         sets::{octahedron, octahedron_faces},
@@ -80,7 +80,7 @@ fn area_weights(k: u32) -> Vec<f64> {
     let (vertices, triangles) = octahedron_faces(k);
     let mut weights = vec![0.0; vertices.len()];
     for corners in triangles {
-        let area = solid_angle(corners.map(|v| vertices[v as usize]));
+        let area = solid_angle(corners.each(|v| vertices[v as usize]));
         for v in corners {
             weights[v as usize] += area;
         }

@@ -5,6 +5,7 @@ use crate::{
     Progress, Result,
     geometry::double_area,
     mesh::Mesh,
+    num::Each,
     view::{frame_of, sets::OCTAHEDRON_LIMIT},
 };
 
@@ -39,7 +40,7 @@ pub fn convergence(
     };
     let truth = with(OCTAHEDRON_LIMIT)?;
     let frame = frame_of(mesh);
-    let area = |t: usize| double_area(mesh.corners(t).map(|p| frame.enter(p)));
+    let area = |t: usize| double_area(mesh.corners(t).each(|p| frame.enter(p)));
     let areas: Vec<f64> = (0..mesh.triangles().len()).map(area).collect();
     let mut steps = Vec::new();
     for octahedron in 0..OCTAHEDRON_LIMIT {

@@ -25,7 +25,7 @@ use crate::{
     Error, Progress, Result,
     geometry::area_normal,
     mesh::Mesh,
-    num::math,
+    num::{Each, math},
     parallel,
     view::{Sphere, frame_of},
 };
@@ -95,7 +95,7 @@ pub(super) fn count(
         .triangles()
         .iter()
         .map(|t| {
-            let corners = t.map(|v| pieces.scene.positions()[v as usize]);
+            let corners = t.each(|v| pieces.scene.positions()[v as usize]);
             math::unit(area_normal(corners)).unwrap_or(DVec3::ZERO)
         })
         .collect();

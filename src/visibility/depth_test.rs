@@ -14,7 +14,10 @@ use glam::DVec3;
 
 use super::UnseenRule;
 use crate::{
-    num::fixed::{SubpixelBits, depth},
+    num::{
+        Each,
+        fixed::{SubpixelBits, depth},
+    },
     raster::{Grid, SampleKey, Scene},
     view::View,
 };
@@ -112,7 +115,7 @@ impl DepthTest {
         if self.rule == UnseenRule::Pixels {
             return false;
         }
-        let [a, b, c] = corners.map(|v| self.points[v as usize]);
+        let [a, b, c] = corners.each(|v| self.points[v as usize]);
         if a.visible || b.visible || c.visible {
             return true;
         }
@@ -134,7 +137,7 @@ impl DepthTest {
         }
         // The picture's vertices may be snapped to 1/256 pixel, which moves them by half of that.
         const MOVED: i32 = PIXEL / 512 + 1;
-        let [a, b, c] = corners.map(|v| self.points[v as usize]);
+        let [a, b, c] = corners.each(|v| self.points[v as usize]);
         let first = |a: i32, b: i32, c: i32| (a.min(b).min(c) - MOVED + HALF - 1) >> 16;
         let last = |a: i32, b: i32, c: i32| (a.max(b).max(c) + MOVED - HALF) >> 16;
         let (left, right) = (first(a.x, b.x, c.x), last(a.x, b.x, c.x));
@@ -171,7 +174,7 @@ impl DepthTest {
                     SampleKey::BACKGROUND => Slope::flat(f64::INFINITY),
                     key => {
                         let corners = scene.triangles()[key.id() as usize];
-                        let corners = corners.map(|v| self.points[v as usize]);
+                        let corners = corners.each(|v| self.points[v as usize]);
                         Slope::of(corners, center_x, center_y)
                             .unwrap_or_else(|| Slope::flat(f64::from(key.depth())))
                     }

@@ -4,6 +4,7 @@ use super::Visibility;
 use crate::{
     Error, Result,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, VertexTriangles},
+    num::Each,
 };
 
 /// The mesh without the triangles of which no view sees anything, from neither side; those that touch a seen one at a
@@ -70,7 +71,7 @@ fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh> {
     let mut vertices = Renumbering::new(mesh.positions().len());
     let triangles = chosen
         .iter()
-        .map(|&t| mesh.triangles()[t].map(|v| vertices.of(v)))
+        .map(|&t| mesh.triangles()[t].each(|v| vertices.of(v)))
         .collect();
     let attributes = mesh.attributes();
     let mut wedges = Renumbering::new(attributes.wedge_count());
@@ -78,7 +79,7 @@ fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh> {
         Vec::new()
     } else {
         let corners = chosen.iter().map(|&t| attributes.corners()[t]);
-        corners.map(|c| c.map(|w| wedges.of(w))).collect()
+        corners.map(|c| c.each(|w| wedges.of(w))).collect()
     };
     let kinds: Vec<ChannelKind> = attributes.channels().iter().map(|c| c.kind).collect();
     let rows = wedges.old.iter().flat_map(|&w| attributes.row(w));

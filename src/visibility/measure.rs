@@ -4,7 +4,9 @@ use super::{
     MeasureOptions,
     counts::{Counts, Weights, count},
 };
-use crate::{Error, Progress, Result, geometry::double_area, mesh::Mesh, view::frame_of};
+use crate::{
+    Error, Progress, Result, geometry::double_area, mesh::Mesh, num::Each, view::frame_of,
+};
 
 /// The visibility of a mesh and of each of its triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +92,7 @@ impl Visibility {
         let frame = frame_of(mesh);
         let (mut all, mut visible, mut hidden) = (0.0, 0.0, 0.0);
         for (t, &v) in triangles.iter().enumerate() {
-            let area = 0.5 * double_area(mesh.corners(t).map(|p| frame.enter(p)));
+            let area = 0.5 * double_area(mesh.corners(t).each(|p| frame.enter(p)));
             all += area;
             visible += area * v;
             if counts.views[t] == 0 {

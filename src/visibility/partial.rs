@@ -9,6 +9,7 @@ use super::{
 use crate::{
     Error, Progress, Result,
     mesh::{Mesh, content_digest},
+    num::Each,
 };
 
 /// The counts of some of the views of a measurement over one mesh: sums of integers.
@@ -147,7 +148,7 @@ impl PartialVisibility {
     /// The options in which another survey differs, and what they are in both.
     fn difference(&self, other: &Self) -> String {
         let [own, others] =
-            [self, other].map(|survey| match serde_json::to_value(survey.options) {
+            [self, other].each(|survey| match serde_json::to_value(survey.options) {
                 Ok(serde_json::Value::Object(options)) => options,
                 _ => serde_json::Map::new(),
             });

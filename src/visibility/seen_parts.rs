@@ -6,6 +6,7 @@
 
 use super::{MeasureOptions, cameras::Cameras, depth_test::DepthTest, subdivide::Pieces};
 use crate::{
+    num::Each,
     raster::{Face, Paint, Projector, ZBuffer},
     view::Cull,
 };
@@ -125,10 +126,10 @@ impl PieceView<'_> {
     /// Counts the samples that a piece covers, whatever they show.
     fn covered_samples(&self, piece: usize) -> u32 {
         let scene = &self.pieces.scene;
-        let positions = scene.triangles()[piece].map(|v| scene.positions()[v as usize]);
+        let positions = scene.triangles()[piece].each(|v| scene.positions()[v as usize]);
         let face = Face {
             positions,
-            screen: positions.map(|p| self.projector.screen(p)),
+            screen: positions.each(|p| self.projector.screen(p)),
             paint: Paint::Flat(0),
         };
         let mut samples = 0;

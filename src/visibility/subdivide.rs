@@ -9,7 +9,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::{Error, Result, geometry::double_area, num::math, raster::Scene};
+use crate::{
+    Error, Result,
+    geometry::double_area,
+    num::{Each, math},
+    raster::Scene,
+};
 
 /// Most pieces that are measured.
 const PIECE_LIMIT: usize = 1 << 24;
@@ -48,7 +53,7 @@ impl Pieces {
             triangles,
             starts,
         } = division;
-        let area = |t: &[u32; 3]| 0.5 * double_area(t.map(|v| positions[v as usize]));
+        let area = |t: &[u32; 3]| 0.5 * double_area(t.each(|v| positions[v as usize]));
         let areas = if starts.is_empty() {
             Vec::new()
         } else {
@@ -103,7 +108,7 @@ impl Division {
     fn fewest_pieces(&self, limit: f64) -> f64 {
         let largest = 0.433 * limit * limit;
         let fewest = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| self.positions[v as usize]);
+            let [a, b, c] = t.each(|v| self.positions[v as usize]);
             let by_area = 0.5 * double_area([a, b, c]) / largest;
             let by_length = math::length(b - a) / limit;
             f64::max(1.0, f64::max(by_area, by_length))

@@ -12,6 +12,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{projection::Projection, sectors::Sectors};
+use crate::num::Each;
 
 /// A face of the mesh that changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +140,7 @@ impl Layout {
         }
         let closed;
         (sectors, closed) = in_order(&sectors)?;
-        let ends = [sectors[0], sectors[sectors.len() - 1]].map(|s| s.face.corners[s.apex]);
+        let ends = [sectors[0], sectors[sectors.len() - 1]].each(|s| s.face.corners[s.apex]);
         let whole = match (closed, beside) {
             (true, 2) => true,
             (false, 2) => ends[0] == ends[1],
@@ -155,7 +156,7 @@ impl Layout {
             parts: Vec::with_capacity(sectors.len()),
         };
         for &face in collapse.removed {
-            let plane = face.points.map(|p| projection.of_point(p));
+            let plane = face.points.each(|p| projection.of_point(p));
             if double_area(&plane) <= LEAST_AREA {
                 return None;
             }
@@ -214,7 +215,7 @@ impl LayoutBuilder {
         projection: &Projection,
     ) -> Option<DVec2> {
         let (first, last) = (sectors[0], sectors[sectors.len() - 1]);
-        let [at_first, at_last] = [first, last].map(|s| s.face.points[s.apex]);
+        let [at_first, at_last] = [first, last].each(|s| s.face.points[s.apex]);
         // Which point of the old boundary the new vertex stands for: along the edge where both ends are on it.
         let both = first.face.corners[first.apex] != last.face.corners[last.apex];
         let along = if both {
@@ -279,7 +280,7 @@ impl LayoutBuilder {
             .collect();
         for before in &mut self.before {
             let corners = before.face.corners;
-            before.fixed = [0, 1, 2].map(|k| {
+            before.fixed = [0, 1, 2].each(|k| {
                 let side = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
                 let shared =
                     |other: &[u32; 3]| *other != corners && side.iter().all(|v| other.contains(v));

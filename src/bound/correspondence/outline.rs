@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::sides::Side;
-use crate::num::fixed::Weights31;
+use crate::num::{Each, fixed::Weights31};
 
 /// Sides of the pieces of one triangle in one layout: a map that needs more is a tangle.
 const SIDES: usize = 2_048;
@@ -89,7 +89,7 @@ fn simplify(corners: &mut Vec<OutlineCorner>, start: usize) {
     let mut i = start;
     while corners.len() > start + 2 && i < corners.len() {
         let n = corners.len() - start;
-        let [before, after] = [n - 1, 1].map(|k| corners[start + (i - start + k) % n].source);
+        let [before, after] = [n - 1, 1].each(|k| corners[start + (i - start + k) % n].source);
         let inside = Side::of(before, after).is_some_and(|side| side.has(corners[i].source));
         if (inside && !corners[i].fixed) || before == after {
             corners.remove(i);
@@ -140,7 +140,7 @@ pub(super) fn tidy(part: &[OutlineCorner], into: &mut Vec<OutlineCorner>) {
 /// corner sees all others, up to rounding.
 pub(super) fn turn_to_fan(part: &mut [OutlineCorner]) -> bool {
     let n = part.len();
-    let place = &|i: usize| part[i % n].source.bits().map(i64::from);
+    let place = &|i: usize| part[i % n].source.bits().each(i64::from);
     // Twice the least area of a triangle from a corner, with what rounding may have taken from it given back.
     let least = |first: usize| {
         let from = move |i: usize| {
@@ -149,7 +149,7 @@ pub(super) fn turn_to_fan(part: &mut [OutlineCorner]) -> bool {
         };
         (2..n).map(move |i| {
             let ([a, b], [c, d]) = (from(i - 1), from(i));
-            let size = [a, b, c, d].map(i64::abs).into_iter().max().unwrap_or(0);
+            let size = [a, b, c, d].each(i64::abs).into_iter().max().unwrap_or(0);
             i128::from(a) * i128::from(d) - i128::from(b) * i128::from(c)
                 + i128::from(ROUNDED) * i128::from(size)
         })

@@ -10,7 +10,7 @@ use glam::DVec3;
 use sha2::{Digest, Sha256};
 
 use super::file::{FORMAT, MAGIC, surface_digest};
-use crate::{Error, Result, bound::surface::Pair, mesh::Mesh};
+use crate::{Error, Result, bound::surface::Pair, mesh::Mesh, num::Each};
 
 /// Magic, format, two digests, two counts, number of pieces.
 const HEADER: usize = 8 + 4 + 64 + 8 + 8;
@@ -137,19 +137,19 @@ impl Reader<'_> {
                 return Err(bad("has a corner outside its triangle".into()));
             }
             let place = |i: usize| point(ends[i], weights[i]);
-            Ok((weights[0].map(i64::from), [place(0), place(1)]))
+            Ok((weights[0].each(i64::from), [place(0), place(1)]))
         };
         let (first, mut last) = (corner()?, corner()?);
         let mut area = 0;
         for _ in 2..corners {
             let next = corner()?;
-            let side = |p: [i64; 2]| [p[0] - first.0[0], p[1] - first.0[1]].map(i128::from);
+            let side = |p: [i64; 2]| [p[0] - first.0[0], p[1] - first.0[1]].each(i128::from);
             let ([a, b], [c, d]) = (side(last.0), side(next.0));
             area += a * d - b * c;
             let corners = [first.1, last.1, next.1];
             pairs.push(Pair {
-                from: corners.map(|[from, _]| from),
-                to: corners.map(|[_, to]| to),
+                from: corners.each(|[from, _]| from),
+                to: corners.each(|[_, to]| to),
                 triangle,
             });
             last = next;

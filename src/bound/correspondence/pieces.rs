@@ -24,7 +24,7 @@ use super::{
     piece::{Allowance, Answer, Corner, FacePieces, Piece, is_whole, itself},
     sectors::CutScratch,
 };
-use crate::num::{fixed::Weights31, math::sqrt};
+use crate::num::{Each, fixed::Weights31, math::sqrt};
 
 /// Corners that all pieces may have together, for each original triangle and for small meshes: this bounds the memory.
 /// Simplified scans need some five for each triangle.
@@ -144,7 +144,7 @@ impl Correspondence {
         });
         let faces = faces.collect();
         Self {
-            originals: self.originals.iter().map(|t| t.map(&units)).collect(),
+            originals: self.originals.iter().map(|t| t.each(&units)).collect(),
             faces,
             itself: self.itself,
             total: self.total,

@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 use super::{layout::Part, outline::OutlineCorner, sides::Side};
-use crate::num::{fixed::Weights31, math::sqrt};
+use crate::num::{Each, fixed::Weights31, math::sqrt};
 
 /// Corners no farther than this from a spoke lie on it: a few roundings of weights, in a plane where faces have a size
 /// near 1.
@@ -306,7 +306,7 @@ impl Sectors {
     /// The point at which a side crosses a spoke.
     fn crossing(&self, p: OutlineCorner, q: OutlineCorner, spoke: usize) -> OutlineCorner {
         let along = self.spokes[spoke];
-        let [dp, dq] = [p, q].map(|c| along.perp_dot(c.plane - self.hub));
+        let [dp, dq] = [p, q].each(|c| along.perp_dot(c.plane - self.hub));
         let on = |d: f64, c: OutlineCorner| d.abs() <= SNAP && along.dot(c.plane - self.hub) > 0.0;
         if on(dq, q) {
             return q;
@@ -388,9 +388,9 @@ fn hub_source(outline: &[OutlineCorner], hub: DVec2) -> Weights31 {
         let weight = (half_tangent((i + n - 1) % n) + half_tangent(i)) / sqrt(d.dot(d));
         let source = corner.source.get();
         sum += weight;
-        at = [0, 1].map(|k| at[k] + weight * source[k]);
+        at = [0, 1].each(|k| at[k] + weight * source[k]);
     }
-    let at = at.map(|x| x / sum);
+    let at = at.each(|x| x / sum);
     if at.iter().all(|x| x.is_finite()) {
         return Weights31::new(at);
     }

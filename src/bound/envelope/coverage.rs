@@ -11,6 +11,7 @@
 use glam::DVec3;
 
 use super::{Facet, Reach, reach::halve};
+use crate::num::Each;
 
 /// Faces that one test can tell apart.
 const FACES: usize = Coverage::FACES;
@@ -137,7 +138,7 @@ impl Coverage {
         });
         for i in 0..trial.ids.len() {
             let corners = self.triangles[trial.ids[i] as usize];
-            let corners = corners.map(|v| trial.place(v, self.points[v as usize]));
+            let corners = corners.each(|v| trial.place(v, self.points[v as usize]));
             trial.corners.push(corners);
         }
         for i in 0..trial.points.len() {
@@ -285,8 +286,8 @@ impl Trial {
         reach: Reach,
         settled: &mut dyn FnMut([DVec3; 3], u128),
     ) -> bool {
-        let corners = self.corners[i].map(|p| self.points[p as usize]);
-        let masks = self.corners[i].map(|p| self.masks[p as usize]);
+        let corners = self.corners[i].each(|p| self.points[p as usize]);
+        let masks = self.corners[i].each(|p| self.masks[p as usize]);
         let common = masks[0] & masks[1] & masks[2];
         if common != 0 {
             settled(corners, common);
@@ -311,7 +312,7 @@ impl Trial {
             if longest2 >= reach.large2
                 && let Some(cut) = nearest.cut(corners, reach.length)
             {
-                let between = cut.between.map(|p| mask(facets, p, reach));
+                let between = cut.between.each(|p| mask(facets, p, reach));
                 if between.contains(&0) {
                     return false;
                 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use crate::{
     geometry::{Box3, TreeItem},
-    num::math,
+    num::{Each, math},
 };
 
 /// `sin^2` of the corner below which a triangle is a sliver: its barycentric coordinates may point at the wrong edge.
@@ -27,7 +27,7 @@ pub(super) struct Cut {
 impl Cut {
     /// The three triangles of the two parts, from what belongs to the corners and to the points between.
     pub(super) fn parts<T: Copy>(&self, corners: [T; 3], between: [T; 2]) -> [[T; 3]; 3] {
-        let [apex, b, c] = [0, 1, 2].map(|step| corners[(self.alone + step) % 3]);
+        let [apex, b, c] = [0, 1, 2].each(|step| corners[(self.alone + step) % 3]);
         let [to_b, to_c] = between;
         [[apex, to_b, to_c], [to_b, b, c], [to_b, c, to_c]]
     }
@@ -124,8 +124,8 @@ impl Facet {
             let Some(inward) = math::unit(normal.cross(along)) else {
                 continue;
             };
-            let depths = piece.map(|p| (p - self.corner - from).dot(inward));
-            let [low, high] = [f64::min, f64::max].map(|f| depths.into_iter().reduce(f));
+            let depths = piece.each(|p| (p - self.corner - from).dot(inward));
+            let [low, high] = [f64::min, f64::max].each(|f| depths.into_iter().reduce(f));
             if let (Some(low), Some(high)) = (low, high)
                 && low < -reach
                 && high > 0.0
@@ -135,10 +135,10 @@ impl Facet {
             }
         }
         let (_, depths) = best?;
-        let inside = depths.map(|d| d >= 0.0);
+        let inside = depths.each(|d| d >= 0.0);
         let alone = (0..3)
             .find(|&k| inside[k] != inside[(k + 1) % 3] && inside[k] != inside[(k + 2) % 3])?;
-        let between = [1, 2].map(|step| {
+        let between = [1, 2].each(|step| {
             let other = (alone + step) % 3;
             let share = depths[alone] / (depths[alone] - depths[other]);
             piece[alone] + (piece[other] - piece[alone]) * share

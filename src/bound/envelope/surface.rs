@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::{Facet, Reach, reach::halve};
-use crate::geometry::TriangleTree;
+use crate::{geometry::TriangleTree, num::Each};
 
 /// Pieces that one test looks at, at most.
 const PIECES: usize = 1 << 16;
@@ -88,7 +88,7 @@ impl OriginalSurface {
                 && let Some(cut) = facet.cut(piece.corners, reach.length)
             {
                 let parts = cut.parts(piece.corners, cut.between);
-                queue.extend(parts.map(|corners| Piece {
+                queue.extend(parts.each(|corners| Piece {
                     corners,
                     near: Some(near),
                 }));

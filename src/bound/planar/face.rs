@@ -31,7 +31,10 @@ use super::{
     interval::Bounds,
     point::{Tangent, tangents},
 };
-use crate::{Error, Result, num::math};
+use crate::{
+    Error, Result,
+    num::{Each, math},
+};
 
 /// A viewpoint this close to a face is on it, as a fraction of the coordinates: where rounding decides on which side it
 /// is, it would also decide whether the limit beside it is found.
@@ -72,8 +75,8 @@ impl Projection {
             direction: local,
             sin: aperture.sin(),
             cos: aperture.cos(),
-            ends: cell.ends().map(end),
-            tangents: [local, mirrored].map(|d| [d, -d].map(|d| tangents(d, aperture))),
+            ends: cell.ends().each(end),
+            tangents: [local, mirrored].each(|d| [d, -d].each(|d| tangents(d, aperture))),
             skew: 0.0,
             scale: 1.0,
             offset: cell.origin().dot(direction),

@@ -8,6 +8,7 @@
 use glam::DVec2;
 
 use super::{Aperture, ViewerSegment};
+use crate::num::Each;
 
 /// The distance that a point may move along a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +73,7 @@ pub struct Tangent {
 #[inline]
 #[must_use]
 pub fn tangents(direction: DVec2, aperture: Aperture) -> [Option<Tangent>; 2] {
-    [1.0, -1.0].map(|sign| {
+    [1.0, -1.0].each(|sign| {
         let (offset, gap) = tangent(direction, sign, aperture.sin(), aperture.cos());
         (gap > 0.0 && offset.is_finite()).then(|| Tangent {
             offset,

@@ -8,7 +8,7 @@
 use glam::DVec2;
 
 use super::ViewerSegment;
-use crate::num::math;
+use crate::num::{Each, math};
 
 /// The worst view of a replaced point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,5 +81,5 @@ fn stationary(m: DVec2, s: DVec2) -> [Option<f64>; 2] {
     }
     let root = math::sqrt(product) * math::sqrt((s - m).dot(s - m));
     let larger = if a < 0.0 { a - root } else { a + root };
-    [larger / b, -b * c / larger].map(|x| x.is_finite().then_some(middle + x))
+    [larger / b, -b * c / larger].each(|x| x.is_finite().then_some(middle + x))
 }

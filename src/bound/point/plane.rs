@@ -10,7 +10,10 @@ use glam::{DVec2, DVec3};
 use super::Aperture;
 use crate::{
     bound::planar::tangents,
-    num::math::{length, sqrt, unit},
+    num::{
+        Each,
+        math::{length, sqrt, unit},
+    },
 };
 
 /// Seen from a point on one side of a plane: its foot, its height above the plane, the direction of a projected vector.
@@ -57,7 +60,7 @@ pub(super) fn max_viewpoints(
 ) -> [Option<DVec3>; 2] {
     let section = Section::new(origin, normal, point, direction);
     let [along, up] = section.axis;
-    tangents(DVec2::new(along, up), aperture).map(|tangent| {
+    tangents(DVec2::new(along, up), aperture).each(|tangent| {
         let x = section.height * tangent?.offset;
         (section.height > 0.0).then(|| section.foot + section.along * x)
     })
@@ -79,5 +82,6 @@ pub(super) fn worst_viewpoints(
     let mean = sqrt(p * p + rise * rise) * sqrt(low * high);
     let near = low * (p * p + rise * high) / (p * low + mean);
     let far = -(p * low + mean) / rise;
-    [near, far].map(|x: f64| (same_side && x.is_finite()).then(|| section.foot + section.along * x))
+    [near, far]
+        .each(|x: f64| (same_side && x.is_finite()).then(|| section.foot + section.along * x))
 }

@@ -5,6 +5,7 @@
 use glam::DVec3;
 
 use super::{HalfSpace, Prism};
+use crate::num::Each;
 
 /// A triangle at either end of the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,7 @@ impl Neighborhood {
             ..Self::default()
         };
         for face in faces {
-            let points = face.points.map(|p| p - origin);
+            let points = face.points.each(|p| p - origin);
             let face = OldFace { points, ..face };
             own.prisms.push(Prism::new(points)?);
             own.links.extend(face.link());

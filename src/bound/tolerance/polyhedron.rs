@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::{HalfSpace, Quadratic};
+use crate::num::Each;
 
 /// A side of a polyhedron.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +45,7 @@ impl Polyhedron {
                 normal,
                 offset: normal.dot(at(corners[0])),
             },
-            points: corners.map(at).to_vec(),
+            points: corners.each(at).to_vec(),
         };
         Self {
             sides: sides.map(side).to_vec(),

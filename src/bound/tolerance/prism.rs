@@ -6,7 +6,10 @@
 use glam::DVec3;
 
 use super::HalfSpace;
-use crate::{geometry::area_normal, num::math};
+use crate::{
+    geometry::area_normal,
+    num::{Each, math},
+};
 
 /// `sin` of the least corner below which a triangle has no normal to speak of.
 const NEEDLE: f64 = 1e-6;
@@ -29,7 +32,7 @@ impl Prism {
         let [a, b, c] = points;
         let cross = area_normal(points);
         let longest2 = [b - a, c - b, a - c]
-            .map(|s| s.dot(s))
+            .each(|s| s.dot(s))
             .into_iter()
             .fold(0.0, f64::max);
         if cross.dot(cross) <= (NEEDLE * NEEDLE) * (longest2 * longest2) {
@@ -57,7 +60,7 @@ impl Prism {
     /// The triangle moved along its normal.
     #[must_use]
     pub fn cap(&self, height: f64) -> [DVec3; 3] {
-        self.points.map(|p| p + self.normal * height)
+        self.points.each(|p| p + self.normal * height)
     }
 
     /// The prism of half-height `bound`: walls, then the upper and the lower cap.

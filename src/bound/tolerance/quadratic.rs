@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use crate::{geometry::Sym3, num::math};
+use crate::{
+    geometry::Sym3,
+    num::{Each, math},
+};
 
 /// `v . H v / 2 + c . v` with a symmetric, positive semidefinite `H`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +26,7 @@ impl Quadratic {
     /// The point at which it is least; `None` where `H` is singular but for rounding.
     #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
-        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.matrix.times(axis));
+        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].each(|axis| self.matrix.times(axis));
         let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
         let determinant = a.dot(bc);
         let trace = self.matrix.trace();

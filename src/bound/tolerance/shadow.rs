@@ -10,6 +10,7 @@
 use glam::DVec3;
 
 use super::HalfSpace;
+use crate::num::Each;
 
 /// The shadows of a cap from the segment `source` (its ends may coincide): none, one, or two where the source is on both
 /// sides of the cap's plane. Each is the intersection of the half-spaces. `tolerance`: length below which points count
@@ -22,11 +23,11 @@ pub fn shadows(
     tolerance: f64,
 ) -> Vec<Vec<HalfSpace>> {
     let height = |p: DVec3| (p - cap[0]).dot(normal);
-    let heights = source.map(height);
+    let heights = source.each(height);
     let mut found = Vec::new();
     for side in [-1.0, 1.0] {
         // The part of the source on this side of the plane.
-        let inside = heights.map(|h| h * side > tolerance);
+        let inside = heights.each(|h| h * side > tolerance);
         let part = match inside {
             [false, false] => continue,
             [true, true] => source,

@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Neighborhood, Polyhedron, Quadratic, shadows};
+use crate::num::Each;
 
 /// Polyhedra of a volume, at most; with more of them the collapse counts as not allowed.
 pub const MOST_POLYHEDRA: usize = 256;
@@ -46,7 +47,7 @@ impl Volume {
         let mut next = Vec::new();
         for (i, prism) in around.prisms().iter().enumerate() {
             for normal in [prism.normal, -prism.normal] {
-                let cap = prism.points.map(|p| p + normal * bound);
+                let cap = prism.points.each(|p| p + normal * bound);
                 for from in sources(around, i, source) {
                     for shadow in shadows(cap, normal, from, tolerance) {
                         next.clear();

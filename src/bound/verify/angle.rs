@@ -29,7 +29,7 @@ use crate::{
     bound::view_cell::ViewCell,
     mesh::Mesh,
     num::{
-        Frame,
+        Each, Frame,
         math::{atan2, cos, length, sin, sqrt},
     },
     parallel,
@@ -297,7 +297,8 @@ impl AngleCheck<'_> {
             let all = record.piece(piece).1;
             let n = all.len();
             (0..n).fold(f64::INFINITY, |least, i| {
-                let [p, q] = [all[i], all[(i + 1) % n]].map(|w| [f64::from(w[0]), f64::from(w[1])]);
+                let [p, q] =
+                    [all[i], all[(i + 1) % n]].each(|w| [f64::from(w[0]), f64::from(w[1])]);
                 let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
                 least.min((dx * (v - p[1]) - dy * (u - p[0])) / (dx.abs() + dy.abs()).max(1.0))
             })
@@ -319,22 +320,22 @@ impl AngleCheck<'_> {
         let mut inside: Option<(f64, usize, [f64; 3])> = None;
         for i in 2..all.len() {
             let [a, b, c] =
-                [all[0], all[i - 1], all[i]].map(|w| [f64::from(w[0]), f64::from(w[1])]);
+                [all[0], all[i - 1], all[i]].each(|w| [f64::from(w[0]), f64::from(w[1])]);
             let area = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
                 (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
             };
             let x = [u, v];
-            let w = [area(x, b, c), area(a, x, c), area(a, b, x)].map(|w| w.max(0.0));
+            let w = [area(x, b, c), area(a, x, c), area(a, b, x)].each(|w| w.max(0.0));
             let sum = w[0] + w[1] + w[2];
             let excess = sum - area(a, b, c).max(0.0);
             if sum > 0.0 && inside.is_none_or(|(least, ..)| excess < least) {
-                inside = Some((excess, i, w.map(|w| w / sum)));
+                inside = Some((excess, i, w.each(|w| w / sum)));
             }
         }
         let Some((_, i, w)) = inside else { return };
         let three = [corners[0], corners[i - 1], corners[i]];
         let [point, replacement] =
-            [0, 1].map(|k| three[0][k] * w[0] + three[1][k] * w[1] + three[2][k] * w[2]);
+            [0, 1].each(|k| three[0][k] * w[0] + three[1][k] * w[1] + three[2][k] * w[2]);
         for viewpoint in self.viewpoints_of(k) {
             let seen = FrameSighting::new(sample.triangle, point, replacement, viewpoint);
             found.see(seen, self.limit2);

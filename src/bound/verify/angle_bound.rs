@@ -16,6 +16,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use glam::DVec3;
 
 use super::{angle_tally::FrameSighting, cell_contact::sights_at_contact};
+use crate::num::Each;
 
 /// Largest excess of an upper bound over the angle attained, as a share of the tangent.
 const NEAR: f64 = 0.002;
@@ -142,7 +143,7 @@ pub(super) fn refine(
                 add(&mut open, corners.clone(), half);
             }
         } else if apart.length2 > 0.0 {
-            let middle = |a: [DVec3; 2], b: [DVec3; 2]| [0, 1].map(|k| (a[k] + b[k]) * 0.5);
+            let middle = |a: [DVec3; 2], b: [DVec3; 2]| [0, 1].each(|k| (a[k] + b[k]) * 0.5);
             for half in halves(&corners, apart, middle) {
                 look(&half, &viewers, seen);
                 add(&mut open, half, viewers.clone());
@@ -178,7 +179,7 @@ fn look(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut FrameSighting) {
 fn look_at_contact(corners: &[[DVec3; 2]], viewers: &[DVec3], seen: &mut FrameSighting) {
     for i in 2..corners.len() {
         let three = [corners[0], corners[i - 1], corners[i]];
-        let turned = three.map(|[p, s]| [s, p]);
+        let turned = three.each(|[p, s]| [s, p]);
         let turned = sights_at_contact(turned, viewers).map(|([s, p], v)| ([p, s], v));
         for ([point, replacement], viewpoint) in sights_at_contact(three, viewers).chain(turned) {
             seen.look(point, replacement, viewpoint);

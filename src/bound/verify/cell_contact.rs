@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::num::math::length;
+use crate::num::{Each, math::length};
 
 /// Distance from the contact at which points are measured, in displacements: near enough for angles next to 90 degrees.
 const NEAR: f64 = 1e-6;
@@ -26,7 +26,7 @@ fn contact(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<([f64; 3], DVec3)>
     } else {
         // Where the viewpoints cross the plane: a point or a segment, cut where it leaves the triangle.
         let height = |p: DVec3| (p - a).dot(normal);
-        let size = [ab, ac].map(length).into_iter().fold(0.0, f64::max);
+        let size = [ab, ac].each(length).into_iter().fold(0.0, f64::max);
         let flat = |p: DVec3| height(p).abs() <= 1e-14 * size * length(normal);
         let mut ends: Vec<DVec3> = viewers.iter().copied().filter(|&v| flat(v)).collect();
         for (i, &v) in viewers.iter().enumerate() {
@@ -59,14 +59,14 @@ fn contact(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<([f64; 3], DVec3)>
     let weights = of(point);
     let inside = weights.iter().all(|w| w.is_finite() && *w >= -1e-12);
     let sum: f64 = weights.iter().map(|w| w.max(0.0)).sum();
-    inside.then(|| (weights.map(|w| w.max(0.0) / sum), point))
+    inside.then(|| (weights.each(|w| w.max(0.0) / sum), point))
 }
 
 /// A point of a tetrahedron in the middle of what a triangle has inside.
 fn middle_inside(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<DVec3> {
     let mut left = triangle.to_vec();
     for k in 0..4 {
-        let [apex, a, b, c] = [0, 1, 2, 3].map(|i| viewers[(k + i) % 4]);
+        let [apex, a, b, c] = [0, 1, 2, 3].each(|i| viewers[(k + i) % 4]);
         let normal = (b - a).cross(c - a);
         let up = (apex - a).dot(normal);
         if up == 0.0 {
@@ -90,7 +90,7 @@ fn middle_inside(triangle: [DVec3; 3], viewers: &[DVec3]) -> Option<DVec3> {
     let middle = sum / left.len() as f64;
     let mut shares = [0.0; 4];
     for (k, share) in shares.iter_mut().enumerate() {
-        let [apex, a, b, c] = [0, 1, 2, 3].map(|i| viewers[(k + i) % 4]);
+        let [apex, a, b, c] = [0, 1, 2, 3].each(|i| viewers[(k + i) % 4]);
         let normal = (b - a).cross(c - a);
         *share = ((middle - a).dot(normal) / (apex - a).dot(normal)).max(0.0);
     }
@@ -113,9 +113,9 @@ pub(super) fn sights_at_contact(
         let at = [mixed(0), mixed(1)];
         let step = length(at[1] - at[0]) * NEAR;
         [at].into_iter()
-            .chain(corners.map(|corner| {
+            .chain(corners.each(|corner| {
                 let t = (step / length(corner[0] - at[0])).min(1.0);
-                [0, 1].map(|k| at[k] + (corner[k] - at[k]) * t)
+                [0, 1].each(|k| at[k] + (corner[k] - at[k]) * t)
             }))
             .map(move |pair| (pair, viewpoint))
     })

@@ -11,7 +11,10 @@
 use glam::DVec3;
 
 use super::nearest::{Facets, double_area};
-use crate::num::math::{length, sqrt};
+use crate::num::{
+    Each,
+    math::{length, sqrt},
+};
 
 /// Limits of a round of cuts of one triangle.
 #[derive(Clone, Copy)]
@@ -100,9 +103,9 @@ impl DistanceBound {
                 (self.largest, self.point) = (distance, middle);
             }
             let facet = surface.facet(near);
-            let corner = part.map(|p| facet.squared(p));
+            let corner = part.each(|p| facet.squared(p));
             let one_facet = sqrt(corner[0].max(corner[1]).max(corner[2]));
-            let radius = part.map(|p| length(p - middle));
+            let radius = part.each(|p| length(p - middle));
             let radius = radius[0].max(radius[1]).max(radius[2]);
             let bound = one_facet.min(distance + radius).min(known);
             if bound <= claim {

@@ -8,7 +8,10 @@
 use glam::DVec3;
 
 use super::viewpoints::{angle, tangent2};
-use crate::num::math::{atan2, length, sqrt};
+use crate::num::{
+    Each,
+    math::{atan2, length, sqrt},
+};
 
 /// Facets in a leaf.
 const LEAF: usize = 4;
@@ -245,7 +248,7 @@ impl Facets {
                 continue;
             }
             let children = [at + 1, node.link];
-            let [first, second] = children.map(|c| self.nodes[c as usize].least_angle(v, p));
+            let [first, second] = children.each(|c| self.nodes[c as usize].least_angle(v, p));
             // The nearer one is looked at first.
             open.extend(if first < second {
                 [children[1], children[0]]

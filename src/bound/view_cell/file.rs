@@ -25,7 +25,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Shape, ViewCell};
-use crate::{Error, Result, encode::json};
+use crate::{Error, Result, encode::json, num::Each};
 
 /// The version of the schema that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
@@ -140,7 +140,7 @@ impl CellRecord {
         let all = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect();
         match cell.shape() {
             Shape::Point(at) => Self::Point(at.to_array()),
-            Shape::Segment(ends) => Self::Segment(ends.map(|e| e.to_array())),
+            Shape::Segment(ends) => Self::Segment(ends.each(|e| e.to_array())),
             Shape::Line { point, direction } => Self::Line {
                 point: point.to_array(),
                 direction: direction.to_array(),
@@ -171,7 +171,7 @@ impl CellRecord {
             Self::Plane { point, normal } | Self::HalfSpace { point, normal } => [*point, *normal],
             Self::Box { low, high } => [*low, *high],
         }
-        .map(DVec3::from_array);
+        .each(DVec3::from_array);
         match self {
             Self::Line { .. } => ViewCell::line(a, b),
             Self::Plane { .. } => ViewCell::plane(a, b),

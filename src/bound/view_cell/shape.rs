@@ -9,7 +9,7 @@ use super::hull;
 use crate::{
     Error, Result,
     num::{
-        Frame,
+        Each, Frame,
         math::{length, unit},
     },
 };
@@ -216,7 +216,7 @@ impl ViewCell {
             | Shape::Line { point, .. }
             | Shape::Plane { point, .. }
             | Shape::HalfSpace { point, .. } => *point = scale(*point),
-            Shape::Segment(ends) => *ends = ends.map(scale),
+            Shape::Segment(ends) => *ends = ends.each(scale),
             Shape::Polygon { corners, .. } | Shape::Polyhedron { corners, .. } => {
                 for corner in corners {
                     *corner = scale(*corner);

@@ -19,7 +19,7 @@ use crate::{
     },
     encode::bytes,
     mesh::{self, Mesh},
-    num::Frame,
+    num::{Each, Frame},
     simplify::{NearestTriangle, originals},
     view::frame_of,
 };
@@ -217,8 +217,8 @@ impl BoundArgs {
             )
         })?;
         let inside = |pair: Pair| Pair {
-            from: pair.from.map(|p| frame.enter(p)),
-            to: pair.to.map(|p| frame.enter(p)),
+            from: pair.from.each(|p| frame.enter(p)),
+            to: pair.to.each(|p| frame.enter(p)),
             ..pair
         };
         Ok(Some(pairs.into_iter().map(inside).collect()))

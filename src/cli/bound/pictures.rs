@@ -15,7 +15,7 @@ use crate::{
     mesh::FramedMesh,
     metric::difference_strip,
     num::{
-        Frame,
+        Each, Frame,
         fixed::SubpixelBits,
         math::{length, tan},
     },
@@ -50,7 +50,7 @@ pub(super) fn write(
     };
     let set = views(size, meshes, worst, eye)?;
     std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
-    let scenes = meshes.map(Scene::of);
+    let scenes = meshes.each(Scene::of);
     for (view, name) in set.views.iter().zip(["worst-view.png", "worst-zoom.png"]) {
         terminal.step("pictures", 0, 0)?;
         let draw =
@@ -93,7 +93,7 @@ fn views(size: u32, meshes: [&FramedMesh; 2], worst: &Worst, eye: DVec3) -> Resu
     let zoom = (2.0 * SHOWN * half_width / tan(0.5 * worst.value)).clamp(1.0, ZOOM_LIMIT);
     let mut zoomed = view;
     for row in &mut zoomed.matrix[..2] {
-        *row = row.map(|m| m * zoom);
+        *row = row.each(|m| m * zoom);
     }
     Ok(ViewSet {
         width: size,

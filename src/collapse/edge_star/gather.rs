@@ -1,7 +1,10 @@
 //! Collecting an edge star from the lists of a live mesh.
 
 use super::{BoundaryEdge, EdgeStar, Spoke, StarFace, normal};
-use crate::collapse::{LiveMesh, wedge};
+use crate::{
+    collapse::{LiveMesh, wedge},
+    num::Each,
+};
 
 /// Most faces of a star that are compared one by one; more are sorted, so that the faces around a hub do not cost
 /// their square.
@@ -29,8 +32,8 @@ impl EdgeStar {
             let Some(corners) = live.triangle(id) else {
                 continue;
             };
-            let points = corners.map(|v| live.position(v));
-            let at = [u, w].map(|end| corners.iter().position(|&v| v == end).unwrap_or(3) as u8);
+            let points = corners.each(|v| live.position(v));
+            let at = [u, w].each(|end| corners.iter().position(|&v| v == end).unwrap_or(3) as u8);
             let face = StarFace {
                 id,
                 corners,
@@ -74,7 +77,7 @@ impl EdgeStar {
         self.links.dedup_by(|link, into| {
             let same = link.vertex == into.vertex;
             if same {
-                into.faces = [0, 1].map(|end| into.faces[end] + link.faces[end]);
+                into.faces = [0, 1].each(|end| into.faces[end] + link.faces[end]);
                 into.beside |= link.beside;
             }
             same
@@ -207,7 +210,7 @@ impl EdgeStar {
         self.keys.clear();
         if self.faces.len() > FEW {
             let faces = self.faces.iter().enumerate();
-            let corners = faces.flat_map(|(i, f)| f.corners.map(|v| ([v, 0, 0], i)));
+            let corners = faces.flat_map(|(i, f)| f.corners.each(|v| ([v, 0, 0], i)));
             self.keys.extend(corners);
             self.keys.sort_unstable();
         }

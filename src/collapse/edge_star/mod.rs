@@ -10,6 +10,7 @@ use glam::DVec3;
 use self::gather::Link;
 use super::{LiveMesh, Patch, PatchFace, patch::Move, pinch, wedge};
 pub(super) use crate::geometry::area_normal as normal;
+use crate::num::Each;
 
 /// Places that the rules leave to the new vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +134,7 @@ impl EdgeStar {
         };
         self.edge = edge;
         self.ends = ends;
-        self.points = ends.map(|v| live.position(v));
+        self.points = ends.each(|v| live.position(v));
         self.gather_faces(live);
         self.gather_spokes(live);
         self.gather_boundary();
@@ -169,7 +170,7 @@ impl EdgeStar {
             };
             patch.removed.push(old);
             if face.survives {
-                let corners = face.corners.map(|v| if v == w { u } else { v });
+                let corners = face.corners.each(|v| if v == w { u } else { v });
                 patch.added.push(PatchFace { corners, ..old });
             }
         }

@@ -15,7 +15,7 @@ use self::incidence::IncidenceLists;
 use super::{PatchFace, wedge::WedgeRows};
 use crate::{
     mesh::{Materials, Mesh},
-    num::{Frame, Precision},
+    num::{Each, Frame, Precision},
 };
 
 /// No vertex, face, wedge, edge or corner.
@@ -208,7 +208,7 @@ impl LiveMesh {
     /// Where there is no such triangle.
     #[must_use]
     pub fn points(&self, id: u32) -> Option<[DVec3; 3]> {
-        Some(self.triangle(id)?.map(|v| self.position(v)))
+        Some(self.triangle(id)?.each(|v| self.position(v)))
     }
 
     /// The wedges of a triangle; [`NONE`] each where there are no attributes.

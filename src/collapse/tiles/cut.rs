@@ -3,6 +3,7 @@
 use crate::{
     collapse::{LiveMesh, NONE},
     geometry::Box3,
+    num::Each,
     parallel,
 };
 
@@ -47,7 +48,7 @@ pub(super) fn cut(live: &LiveMesh, most: usize, round: u32) -> Vec<Cut> {
         if corners[0] == NONE {
             continue;
         }
-        let tiles = corners.map(|v| tile_of[v as usize]);
+        let tiles = corners.each(|v| tile_of[v as usize]);
         if tiles[0] == tiles[1] && tiles[1] == tiles[2] {
             cuts[tiles[0] as usize].faces.push(t as u32);
         } else {

@@ -9,6 +9,7 @@ use crate::{
         Counters, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, NONE, Observer,
         Patch, Plan, Proposal, Refusal, Review, Site,
     },
+    num::Each,
 };
 
 /// A tile after its collapses, in ids of the whole. Its adjacency is gone: all tiles of a round wait
@@ -44,7 +45,7 @@ pub(super) fn collapse_tile(
     let local = |v: u32| vertices.binary_search(&v).map_or(NONE, |slot| slot as u32);
     let corners = faces
         .iter()
-        .map(|&t| whole.faces[t as usize].map(local))
+        .map(|&t| whole.faces[t as usize].each(local))
         .collect();
     let live = LiveMesh::part(whole, positions, corners, frozen);
     let mut method = Limited {
@@ -70,7 +71,7 @@ pub(super) fn collapse_tile(
         })
         .collect();
     let corners = live.faces.iter().map(|corners| {
-        corners.map(|v| match v {
+        corners.each(|v| match v {
             NONE => NONE,
             v => vertices[v as usize],
         })

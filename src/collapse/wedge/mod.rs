@@ -4,7 +4,10 @@ mod transfer;
 
 pub(super) use self::transfer::{WedgeScratch, transfer};
 use super::{LiveMesh, StarFace};
-use crate::mesh::{Attributes, Channel, ChannelKind};
+use crate::{
+    mesh::{Attributes, Channel, ChannelKind},
+    num::Each,
+};
 
 /// The values of all wedges, rows that patches appended included.
 #[derive(Clone, Debug, Default)]
@@ -105,7 +108,7 @@ pub(super) fn is_feature<'a>(
         return false;
     };
     at.any(|(other, other_at)| {
-        let faces = [first, other].map(|f| (f.id, live.wedges(f.id)));
+        let faces = [first, other].each(|f| (f.id, live.wedges(f.id)));
         differ(live, faces, [first_at, other_at], makes_features)
     })
 }
@@ -144,7 +147,7 @@ pub(super) fn differ(
 /// Twice the signed area of a triangle in texture space; NaN where it has no texture coordinates.
 #[must_use]
 pub fn texture_area(rows: &WedgeRows, channel: Channel, wedges: [u32; 3]) -> f64 {
-    let [a, b, c] = wedges.map(|w| {
+    let [a, b, c] = wedges.each(|w| {
         let value = rows.value(channel, w);
         [value[0], value[1]]
     });

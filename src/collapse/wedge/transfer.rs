@@ -14,7 +14,7 @@ use super::{WedgeRows, same_bits};
 use crate::{
     collapse::{EdgeStar, LiveMesh, Patch, pinch::Forest},
     mesh::{Channel, ChannelKind},
-    num::{Precision, math},
+    num::{Each, Precision, math},
 };
 
 /// A corner of the star at one end of its edge.
@@ -89,7 +89,7 @@ pub(in crate::collapse) fn transfer(
             firsts[corner.class][corner.end].get_or_insert(corner.wedge);
         }
         for (i, corner) in corners.iter().enumerate() {
-            let ends = firsts[corner.class].map(|first| first.map(|w| rows.value(channel, w)));
+            let ends = firsts[corner.class].each(|first| first.map(|w| rows.value(channel, w)));
             let into = &mut values[i * rows.stride + channel.offset..][..channel.kind.width()];
             match ends {
                 [Some(a), Some(b)] => interpolate(channel.kind, live.precision(), a, b, t, into),

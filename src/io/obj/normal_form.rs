@@ -15,7 +15,11 @@ use std::{
 };
 
 use super::lines::{float, keyword, lines, words};
-use crate::{io::words::shown, mesh::Materials, num::Precision};
+use crate::{
+    io::words::shown,
+    mesh::Materials,
+    num::{Each, Precision},
+};
 
 /// The normal form of a text, and what `tobj` cannot see of it.
 pub(super) struct Scan {
@@ -231,7 +235,7 @@ impl Scanner {
             self.uses[0] |= vt != ABSENT;
             self.uses[1] |= vn != ABSENT;
             // From 1; the first texture coordinate and normal stand for absent ones: ABSENT wraps to 0.
-            let [vt, vn] = [vt, vn].map(|i| u64::from(i.wrapping_add(1)) + 1);
+            let [vt, vn] = [vt, vn].each(|i| u64::from(i.wrapping_add(1)) + 1);
             // Writing to a Vec cannot fail.
             let _ = write!(self.face_text, " {}/{vt}/{vn}", u64::from(v) + 1);
         }

@@ -19,7 +19,7 @@ use crate::{
     Error,
     io::{Encoding, Loaded, attribute_rows, words::shown},
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, group_equal},
-    num::{Frame, Precision, math},
+    num::{Each, Frame, Precision, math},
 };
 
 pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
@@ -212,7 +212,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
         let united = group_equal(corners.len(), &|a, b| corners[a].cmp(&corners[b]));
         let mut values = Vec::new();
         for &corner in &united.firsts {
-            let [v, vt, vn] = corners[corner].map(|i| i as usize);
+            let [v, vt, vn] = corners[corner].each(|i| i as usize);
             if uses_normals {
                 values.extend(&normals[3 * vn..3 * vn + 3]);
             }
@@ -230,7 +230,7 @@ fn assemble(scan: &Scan, parsed: Parsed, precision: Precision) -> Result<Mesh, S
     let (corners, _) = corners.as_chunks::<3>();
     Mesh::new(MeshParts {
         positions,
-        triangles: corners.iter().map(|t| t.map(|[v, _, _]| v)).collect(),
+        triangles: corners.iter().map(|t| t.each(|[v, _, _]| v)).collect(),
         attributes,
         materials: scan.materials.clone(),
         precision,

@@ -10,6 +10,7 @@ use crate::{
     Result,
     io::attribute_rows,
     mesh::{Attributes, ChannelKind, compare_rows, group_equal},
+    num::Each,
 };
 
 /// The properties of a face that are kept, by their index.
@@ -139,7 +140,7 @@ impl<S: Source> Reader<S> {
             self.triangles
                 .push([corners[0], corners[i], corners[i + 1]]);
             if keep_uvs {
-                self.corner_uvs.push([0, i, i + 1].map(|corner| {
+                self.corner_uvs.push([0, i, i + 1].each(|corner| {
                     match uvs.get(2 * corner..2 * corner + 2) {
                         Some(uv) => [uv[0], uv[1]],
                         None => [f64::NAN; 2],

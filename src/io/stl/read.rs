@@ -16,6 +16,7 @@ use crate::{
         words::{Words, shown},
     },
     mesh::Mesh,
+    num::Each,
 };
 
 /// Bytes before the first triangle, and of every triangle.
@@ -160,7 +161,7 @@ fn text(bytes: &[u8]) -> Result<Loaded, String> {
                 "the next vertex or the end of the loop",
             )? == 0
             {
-                let [x, y, z] = [(); 3].map(|()| float(&mut words, "a finite coordinate", true));
+                let [x, y, z] = [(); 3].each(|()| float(&mut words, "a finite coordinate", true));
                 facet.push(DVec3::new(x?, y?, z?));
             }
             expect(&mut words, &["endfacet"], "the end of the facet")?;

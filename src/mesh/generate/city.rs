@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::{Mesh, Pcg32, Surface};
+use crate::num::Each;
 
 /// Buildings along a street.
 const COLUMNS: u32 = 20;
@@ -70,7 +71,7 @@ fn building(low: [f64; 2], high: [f64; 2], height: f64) -> Surface {
         [high[0], high[1]],
         [low[0], high[1]],
     ];
-    let at = |z: f64| ground.map(|[x, y]| rounded(DVec3::new(x, y, z)));
+    let at = |z: f64| ground.each(|[x, y]| rounded(DVec3::new(x, y, z)));
     let mut positions = at(0.0).to_vec();
     positions.extend(at(height));
     let mut triangles = Vec::new();
@@ -118,7 +119,7 @@ pub fn trees(count: u32, radius: f64) -> Mesh {
             place + half + up,
         ];
         let tree = Surface {
-            positions: corners.map(rounded).to_vec(),
+            positions: corners.each(rounded).to_vec(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         };
         surface.add(&tree, |p| p);

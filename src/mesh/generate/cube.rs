@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use super::{attributes, finish};
-use crate::mesh::{ChannelKind, Materials, Mesh, MeshParts};
+use crate::{
+    mesh::{ChannelKind, Materials, Mesh, MeshParts},
+    num::Each,
+};
 
 /// The cube [-1, 1]^3: 8 vertices, 12 triangles, 24 wedges with a texture coordinate and a normal each, and a material
 /// for every side (`x-`, `x+`, `y-`, ...). Every side shows the whole texture, v up.
@@ -34,7 +37,7 @@ pub fn cube() -> Mesh {
         let right = up.cross(normal);
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let [a, b, c, d] =
-            corners.map(|[u, v]| number(normal + right * (2.0 * u - 1.0) + up * (2.0 * v - 1.0)));
+            corners.each(|[u, v]| number(normal + right * (2.0 * u - 1.0) + up * (2.0 * v - 1.0)));
         parts.triangles.extend([[a, b, c], [a, c, d]]);
         for uv in corners {
             values.extend(uv);

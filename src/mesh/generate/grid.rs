@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use super::Surface;
-use crate::{mesh::Mesh, num::math};
+use crate::{
+    mesh::Mesh,
+    num::{Each, math},
+};
 
 /// Largest number of cells in one direction.
 const CELL_LIMIT: u32 = 2_048;
@@ -39,11 +42,11 @@ pub fn grid(n: u32, m: u32, height: Height) -> Mesh {
 }
 
 pub(super) fn grid_surface(n: u32, m: u32, height: Height) -> Surface {
-    let [n, m] = [n, m].map(|s| s.clamp(1, CELL_LIMIT));
+    let [n, m] = [n, m].each(|s| s.clamp(1, CELL_LIMIT));
     let mut surface = Surface::default();
     for j in 0..=m {
         for i in 0..=n {
-            let [x, y] = [(i, n), (j, m)].map(|(i, n)| 2.0 * (f64::from(i) / f64::from(n)) - 1.0);
+            let [x, y] = [(i, n), (j, m)].each(|(i, n)| 2.0 * (f64::from(i) / f64::from(n)) - 1.0);
             surface.positions.push(DVec3::new(x, y, height.at(x, y)));
         }
     }

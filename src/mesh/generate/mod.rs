@@ -22,6 +22,7 @@ mod torus;
 use glam::DVec3;
 
 use super::{Attributes, ChannelKind, Mesh, MeshParts};
+use crate::num::Each;
 
 pub use city::{buildings, city, forest, trees};
 pub use cube::cube;
@@ -87,7 +88,7 @@ impl Surface {
         let first = self.positions.len() as u32;
         self.positions
             .extend(other.positions.iter().map(|&p| place(p)));
-        let moved = other.triangles.iter().map(|t| t.map(|v| v + first));
+        let moved = other.triangles.iter().map(|t| t.each(|v| v + first));
         self.triangles.extend(moved);
     }
 

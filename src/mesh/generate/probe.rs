@@ -8,7 +8,7 @@ use super::{
     sphere::{spherical_surface, tetrahedral_surface},
     torus::round_surface,
 };
-use crate::mesh::Mesh;
+use crate::{mesh::Mesh, num::Each};
 
 /// Fewer than 500 triangles within 1.5 of the origin: a sphere half hidden behind an open sheet and pierced by a
 /// tetrahedron, a ring, a fan of slivers, faces that occur twice (also reversed, also with vertices of their own),
@@ -40,12 +40,12 @@ pub fn probe() -> Mesh {
     });
     // No area: a point, an edge, three corners in a line.
     let line = scene.positions.len() as u32;
-    let points = [0.0, 0.5, 1.0].map(|t| DVec3::new(t, 0.75, -t));
+    let points = [0.0, 0.5, 1.0].each(|t| DVec3::new(t, 0.75, -t));
     scene.positions.extend(points);
     let degenerate = [[0, 0, 0], [0, 1, 1], [0, 1, 2]];
     scene
         .triangles
-        .extend(degenerate.map(|t: [u32; 3]| t.map(|v| v + line)));
+        .extend(degenerate.each(|t: [u32; 3]| t.each(|v| v + line)));
     cloud(&mut scene);
     scene.into_mesh()
 }
@@ -72,12 +72,12 @@ fn cloud(scene: &mut Surface) {
     let mut random = Pcg32::new(2000, 2007);
     for _ in 0..40 {
         let mut vector = |size: f64| {
-            let [x, y, z] = [(); 3].map(|()| size * (2.0 * random.unit() - 1.0));
+            let [x, y, z] = [(); 3].each(|()| size * (2.0 * random.unit() - 1.0));
             DVec3::new(x, y, z)
         };
         let center = vector(0.7);
         let first = scene.positions.len() as u32;
-        let corners = [(); 3].map(|()| center + vector(0.12));
+        let corners = [(); 3].each(|()| center + vector(0.12));
         scene.positions.extend(corners);
         scene.triangles.push([first, first + 1, first + 2]);
     }

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, f64::consts::TAU};
 use glam::DVec3;
 
 use super::{Surface, torus::swept};
-use crate::num::math;
+use crate::num::{Each, math};
 
 /// A body turned around the z axis: `rows` are radius and height from bottom to top, both ends on the axis (whatever
 /// their radius says), each of the others has `around` vertices; a flat
@@ -77,14 +77,14 @@ pub(super) fn hollow(radii: [f64; 2], heights: [f64; 2], around: u32) -> Surface
 /// The box with the given half sides around the origin: edges rounded with `radius` in twice `steps` steps, two
 /// triangles in the flat part of each side.
 pub(super) fn round_box(half: DVec3, radius: f64, steps: u32) -> Surface {
-    let lines = [0, 1, 2].map(|axis| lines(half[axis], radius, steps.max(1)));
-    let n = lines.each_ref().map(|l| l.len() as u32 - 1);
+    let lines = [0, 1, 2].each(|axis| lines(half[axis], radius, steps.max(1)));
+    let n = lines.each_ref().each(|l| l.len() as u32 - 1);
     let mut surface = Surface::default();
     let mut numbers: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let core = half - DVec3::splat(radius);
     let mut vertex = |at: [u32; 3]| {
         *numbers.entry(at).or_insert_with(|| {
-            let [x, y, z] = [0, 1, 2].map(|axis| lines[axis][at[axis] as usize]);
+            let [x, y, z] = [0, 1, 2].each(|axis| lines[axis][at[axis] as usize]);
             let p = DVec3::new(x, y, z);
             let inside = p.clamp(-core, core);
             let out = math::unit(p - inside).unwrap_or_default();

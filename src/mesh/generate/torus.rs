@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{Surface, attributes, finish};
 use crate::{
     mesh::{ChannelKind, Mesh, MeshParts},
-    num::{Precision, math},
+    num::{Each, Precision, math},
 };
 
 /// Largest number of segments in one direction.
@@ -43,7 +43,7 @@ pub fn interlocking_tori(around: u32, across: u32) -> Mesh {
 /// turns. `around` and `across` as in [`torus`]; wedges outnumber vertices by `around + across + 1`.
 #[must_use]
 pub fn textured_torus(around: u32, across: u32) -> Mesh {
-    let [n, m] = [around, across].map(|s| s.clamp(3, SEGMENT_LIMIT));
+    let [n, m] = [around, across].each(|s| s.clamp(3, SEGMENT_LIMIT));
     let surface = swept(n, m, 1.0, |theta, phi| {
         let (x, y) = (0.45 * math::cos(phi), 0.2 * math::sin(phi));
         let (c, s) = (math::cos(SPINS * theta), math::sin(SPINS * theta));
@@ -53,7 +53,7 @@ pub fn textured_torus(around: u32, across: u32) -> Mesh {
     for i in 0..=n {
         for j in 0..=m {
             let uv = [f64::from(i) / f64::from(n), f64::from(j) / f64::from(m)];
-            values.extend(uv.map(|x| Precision::F32.round(x)));
+            values.extend(uv.each(|x| Precision::F32.round(x)));
         }
     }
     let wedges = quads(n, m, |i, j| i * (m + 1) + j);
@@ -67,7 +67,7 @@ pub fn textured_torus(around: u32, across: u32) -> Mesh {
 }
 
 pub(super) fn round_surface(major: f64, minor: f64, around: u32, across: u32) -> Surface {
-    let [n, m] = [around, across].map(|s| s.clamp(3, SEGMENT_LIMIT));
+    let [n, m] = [around, across].each(|s| s.clamp(3, SEGMENT_LIMIT));
     swept(n, m, major, |_, phi| {
         [minor * math::cos(phi), minor * math::sin(phi)]
     })

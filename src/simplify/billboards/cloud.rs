@@ -17,7 +17,7 @@ use crate::{
     Progress, Result,
     bound::{planar::Interval, view_cell::ViewCell},
     mesh::Mesh,
-    num::math,
+    num::{Each, math},
     parallel,
 };
 
@@ -133,7 +133,7 @@ impl Scene<'_> {
         };
         let right = towards.perp();
         let (at, steep) = (normal * slab.rho, along.dot(towards));
-        let axes = [right, DVec2::ZERO, towards].map(|a| up.place(a, 0.0));
+        let axes = [right, DVec2::ZERO, towards].each(|a| up.place(a, 0.0));
         let axes = [axes[0], up.place(DVec2::ZERO, 1.0), axes[2]];
         let triangles = |numbers: &mut dyn Iterator<Item = u32>| {
             let mut all: Vec<u32> = numbers
@@ -200,7 +200,7 @@ impl Scene<'_> {
             flat::levels(bounded.clone())
         };
         let axes = [(DVec2::X, 0.0), (DVec2::Y, 0.0), (DVec2::ZERO, 1.0)];
-        let axes = axes.map(|(plan, height)| up.place(plan, height));
+        let axes = axes.each(|(plan, height)| up.place(plan, height));
         let quad = |level: Level| {
             let origin = up.place(DVec2::ZERO, level.height);
             let mut quad = self.framed(origin, axes, axes[2], level.triangles)?;
@@ -239,7 +239,7 @@ impl Scene<'_> {
         }
         let up = self.options.up;
         let distance = replaces.iter().fold(f64::INFINITY, |least, &t| {
-            let [a, b, c] = self.mesh.corners(t as usize).map(|p| up.plan(p));
+            let [a, b, c] = self.mesh.corners(t as usize).each(|p| up.plan(p));
             let to = |p, q| self.plan_cell.distance(p, q);
             least.min(to(a, b)).min(to(b, c)).min(to(c, a))
         });
@@ -253,7 +253,7 @@ impl Scene<'_> {
             axes,
             along,
             size,
-            texels: size.map(|side| texels(side, distance, angle, most)),
+            texels: size.each(|side| texels(side, distance, angle, most)),
             replaces,
             drawn: Vec::new(),
             horizontal: false,

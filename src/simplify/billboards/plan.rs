@@ -10,6 +10,7 @@ use crate::{
     bound::planar::{Interval, Projection},
     geometry::area_normal,
     mesh::Mesh,
+    num::Each,
 };
 
 /// The axis that points up; the other two, in cyclic order, span the ground.
@@ -147,7 +148,7 @@ impl Plan {
         let mut plan = Self::default();
         let mut keyed: Vec<([u64; 12], u32, Vec<[DVec2; 2]>)> = Vec::new();
         for t in 0..mesh.triangles().len() {
-            let corners = mesh.corners(t).map(|c| up.plan(c));
+            let corners = mesh.corners(t).each(|c| up.plan(c));
             if cell.meets(&corners) {
                 plan.touched.push(t as u32);
                 continue;

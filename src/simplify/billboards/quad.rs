@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     mesh::{ChannelKind, Mesh},
-    num::{fixed::SubpixelBits, math},
+    num::{Each, fixed::SubpixelBits, math},
     raster::{self, Grid, Scene},
     view::{Cull, Eye, Light, Shading, View, ViewSet},
 };
@@ -144,7 +144,7 @@ fn neighbour(tones: &Grid<[u8; 3]>, covered: &Grid<u8>, [x, y]: [u32; 2]) -> Opt
             }
         }
     }
-    (count > 0).then(|| sum.map(|s| (s / count) as u8))
+    (count > 0).then(|| sum.each(|s| (s / count) as u8))
 }
 
 fn colors(mesh: &Mesh, triangles: &[u32]) -> Vec<[[f64; 3]; 3]> {
@@ -163,7 +163,7 @@ fn colors(mesh: &Mesh, triangles: &[u32]) -> Vec<[[f64; 3]; 3]> {
             [v[0], v[1], v[2]]
         }
     };
-    let of = |&t: &u32| attributes.corners()[t as usize].map(color);
+    let of = |&t: &u32| attributes.corners()[t as usize].each(color);
     triangles.iter().map(of).collect()
 }
 

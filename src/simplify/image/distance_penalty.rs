@@ -10,7 +10,10 @@ use glam::DVec3;
 use crate::{
     collapse::{LiveMesh, Patch, Star},
     geometry::{TriangleTree, double_area},
-    num::math::{length, sqrt},
+    num::{
+        Each,
+        math::{length, sqrt},
+    },
     parallel,
 };
 
@@ -87,7 +90,7 @@ impl<'a> DistancePenalty<'a> {
         for face in &star.faces {
             let k = face.corners.iter().position(|&v| v == star.vertex)?;
             let tip = star.point;
-            let [left, right] = [1, 2].map(|i| live.position(face.corners[(k + i) % 3]));
+            let [left, right] = [1, 2].each(|i| live.position(face.corners[(k + i) % 3]));
             let normal = (left - tip).cross(right - tip);
             let area = length(normal);
             if area <= 0.0 {
@@ -130,7 +133,7 @@ impl<'a> DistancePenalty<'a> {
             (b + c) * 0.5,
             (c + a) * 0.5,
         ];
-        let distances = points.map(|p| {
+        let distances = points.each(|p| {
             let (squared, index) = self.original.squared_distance(p, *near);
             *near = index;
             sqrt(squared)

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::{
     collapse::{LiveMesh, NONE, Patch},
     mesh::{Channel, ChannelKind},
-    num::math::unit,
+    num::{Each, math::unit},
     raster::{Added, FaceGeometry, Scene, SceneEdit},
 };
 
@@ -40,7 +40,7 @@ impl Slots {
             if slots.color.is_some() {
                 colors.push(slots.colors(live, &[], live.wedges(id)));
             }
-            triangles.push(corners.map(|v| {
+            triangles.push(corners.each(|v| {
                 let slot = &mut slots.vertices[v as usize];
                 if *slot == NONE {
                     *slot = positions.len() as u32;
@@ -61,7 +61,7 @@ impl Slots {
         let Some(channel) = self.color else {
             return [[1.0; 3]; 3];
         };
-        wedges.map(|w| {
+        wedges.each(|w| {
             let row = if w < live.wedge_count() {
                 live.rows().row(w)
             } else {
@@ -109,7 +109,7 @@ impl Translator {
             .extend(patch.removed.iter().map(|face| triangle(face.id)));
         self.edit.added.extend(patch.added.iter().map(|face| Added {
             id: triangle(face.id),
-            corners: face.corners.map(|v| slots.vertices[v as usize]),
+            corners: face.corners.each(|v| slots.vertices[v as usize]),
             colors: slots.colors(live, &patch.rows, face.wedges),
         }));
         self.edit.moved.extend(
@@ -162,7 +162,7 @@ impl Translator {
             self.edit.removed.push(id);
             self.edit.added.push(Added {
                 id,
-                corners: face.corners.map(|v| slots.vertices[v as usize]),
+                corners: face.corners.each(|v| slots.vertices[v as usize]),
                 colors: slots.colors(live, &patch.rows, live.wedges(face.id)),
             });
         }

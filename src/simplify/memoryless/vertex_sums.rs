@@ -12,6 +12,7 @@ use super::{MemorylessOptions, Objective, constraints::Gradient};
 use crate::{
     collapse::{LiveMesh, Patch, legality::STAR_LIMIT},
     geometry::{self, Sym3},
+    num::Each,
 };
 
 /// Most faces of a patch that are looked through for their vertices; beyond that those are sorted.
@@ -169,7 +170,7 @@ impl Fans {
 }
 
 fn area_normal(live: &LiveMesh, corners: [u32; 3]) -> DVec3 {
-    geometry::area_normal(corners.map(|v| live.position(v)))
+    geometry::area_normal(corners.each(|v| live.position(v)))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::{
         Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Reason,
         Refusal, Review, Site, legality,
     },
-    num::math,
+    num::{Each, math},
 };
 
 /// Number of doublings of the local bound, in two steps each: it starts at 1/32 of the bound.
@@ -216,7 +216,7 @@ impl Around {
         let faces = || {
             star.faces.iter().map(|f| OldFace {
                 points: f.points,
-                ends: [0, 1, 2].map(|k| f.at.contains(&k)),
+                ends: [0, 1, 2].each(|k| f.at.contains(&k)),
             })
         };
         let own = &mut self.0;
@@ -284,7 +284,7 @@ impl Method for ToleranceMethod {
             }
         }
         let [u, w] = site.star.points;
-        let mut others = [u, w, site.star.midpoint()].map(|p| (objective.cost(site.star, p), p));
+        let mut others = [u, w, site.star.midpoint()].each(|p| (objective.cost(site.star, p), p));
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, place) in others {
             match attempt(place, &mut around, scratch) {

@@ -18,6 +18,7 @@ use crate::{
         Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan,
         Proposal, Reason, Refusal, Review, Site,
     },
+    num::Each,
 };
 
 /// The order and places of [`Memoryless`], and the account of where every point went.
@@ -56,7 +57,7 @@ impl ViewBounded {
         options.check()?;
         let origin = origin(live);
         let originals: Vec<[DVec3; 3]> = (0..live.triangle_ids())
-            .map(|t| live.points(t).unwrap_or([origin; 3]).map(|p| p - origin))
+            .map(|t| live.points(t).unwrap_or([origin; 3]).each(|p| p - origin))
             .collect();
         progress.step("measure the way to the cell", 0, 0)?;
         let cell = options.cell.enter_frame(live.frame());
@@ -178,7 +179,7 @@ fn lay_out(
     let face = |f: &PatchFace, points: [DVec3; 3]| Face {
         id: f.id,
         corners: f.corners,
-        points: points.map(|p| p - origin),
+        points: points.each(|p| p - origin),
     };
     removed.clear();
     removed.extend(patch.removed.iter().map(|f| face(f, patch.before(live, f))));

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     Progress, Result,
     mesh::Mesh,
+    num::Each,
     parallel,
     raster::{Grid, SampleKey},
     view::{View, ViewSet},
@@ -52,7 +53,7 @@ impl RayCaster {
     ) -> Result<Grid<SampleKey>> {
         let rays = Rays::new(view, set, &self.positions);
         let (width, height) = (set.width * set.samples, set.height * set.samples);
-        let planes = [0, 1].map(|axis| rays.planes(axis, &self.hierarchy));
+        let planes = [0, 1].each(|axis| rays.planes(axis, &self.hierarchy));
         let mut keys = Grid::filled(width, height, SampleKey::BACKGROUND);
         let chunk = (ROWS * width).max(1) as usize;
         for (i, rows) in keys.values_mut().chunks_mut(chunk).enumerate() {

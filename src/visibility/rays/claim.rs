@@ -6,7 +6,7 @@ use super::{
     intersect::{Ray, Rays, line},
     outline::Outline,
 };
-use crate::view::Cull;
+use crate::{num::Each, view::Cull};
 
 /// By how many units of 2^-32 depths may differ beyond what a move of the triangles explains: vertices and pixels are
 /// rounded down once each.
@@ -56,7 +56,7 @@ impl<'a> Pixel<'a> {
         let [x, y] = self.at;
         // Rows count downwards, planes upwards.
         let planes = [(0, x), (1, self.rays.size[1] - 1 - y)]
-            .map(|(axis, i)| self.rays.plane(axis, i, &self.caster.hierarchy));
+            .each(|(axis, i)| self.rays.plane(axis, i, &self.caster.hierarchy));
         let line = line(planes[0], planes[1]);
         let mut certain: Option<f64> = None;
         self.caster.hierarchy.candidates(line.as_ref(), |t| {

@@ -20,7 +20,9 @@ use super::{
     intersect::Rays,
 };
 use crate::{
-    Error, Progress, Result, parallel,
+    Error, Progress, Result,
+    num::Each,
+    parallel,
     raster::{Grid, SampleKey},
     view::{View, ViewSet},
 };
@@ -212,7 +214,7 @@ impl RayCaster {
             index,
             grid_exact,
         };
-        let [width, height] = size.map(|side| side as usize);
+        let [width, height] = size.each(|side| side as usize);
         let mut classes = Grid::filled(size[0], size[1], Class::Background);
         let mut witnesses = Vec::new();
         for first in (0..height).step_by(64) {
@@ -313,7 +315,7 @@ impl Judge<'_> {
         if pixel.check(theirs).is_err() {
             return Class::Rays;
         }
-        let outlines = [ours, theirs].map(|id| pixel.outline(id?));
+        let outlines = [ours, theirs].each(|id| pixel.outline(id?));
         let any = |what: fn(&super::outline::Outline) -> bool| outlines.iter().flatten().any(what);
         if any(|o| o.area <= TOLERANCE * TOLERANCE) {
             Class::Degenerate
@@ -330,7 +332,7 @@ impl Judge<'_> {
             return Class::Range;
         };
         let [low, high] = outline.depths(TOLERANCE);
-        let [z, exact] = [shown, hit].map(|key| f64::from(key.depth()));
+        let [z, exact] = [shown, hit].each(|key| f64::from(key.depth()));
         let near = z - exact <= QUANTA && exact - z <= QUANTA;
         if near || (z >= low - QUANTA && z <= high + QUANTA) {
             Class::Equal

@@ -5,7 +5,7 @@
 //! guard band and in front of the near plane.
 
 use super::{exact::Exact, intersect::Rays};
-use crate::num::fixed::SubpixelBits;
+use crate::num::{Each, fixed::SubpixelBits};
 
 /// One past the largest depth.
 const DEPTHS: f64 = 4_294_967_296.0;
@@ -15,8 +15,8 @@ pub(super) fn is_exact(rays: &Rays<'_>, corners: &[u32], bits: SubpixelBits) -> 
     let zero = |x: &Exact| x.sign().is_eq();
     let band = bits.guard_band();
     corners.iter().all(|&v| {
-        let [x, y, z, w] = rays.points[v as usize].map(|n| n.value);
-        let [width, height] = rays.size.map(|side| side as f64);
+        let [x, y, z, w] = rays.points[v as usize].each(|n| n.value);
+        let [width, height] = rays.size.each(|side| side as f64);
         let column = (x / w * 0.5 + 0.5) * width;
         let row = (0.5 - y / w * 0.5) * height;
         let scale = f64::from(bits.scale());

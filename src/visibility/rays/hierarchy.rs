@@ -25,7 +25,7 @@ use obvhs::{
 };
 
 use crate::num::{
-    Frame,
+    Each, Frame,
     math::{length, unit},
 };
 
@@ -86,7 +86,7 @@ impl Hierarchy {
         };
         let boxes: Vec<Aabb> = triangles
             .iter()
-            .map(|t| hierarchy.bounds(t.map(|v| positions[v as usize])))
+            .map(|t| hierarchy.bounds(t.each(|v| positions[v as usize])))
             .collect();
         if !boxes.is_empty() {
             let params = BvhBuildParams::medium_build();
@@ -106,8 +106,8 @@ impl Hierarchy {
     }
 
     fn bounds(&self, corners: [DVec3; 3]) -> Aabb {
-        let [a, b, c] = corners.map(|p| self.frame.enter(p - self.center));
-        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().map(|x| x as f32));
+        let [a, b, c] = corners.each(|p| self.frame.enter(p - self.center));
+        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().each(|x| x as f32));
         let margin = Vec3A::splat(MARGIN);
         Aabb::new(
             narrow(a.min(b).min(c)) - margin,
@@ -125,7 +125,7 @@ impl Hierarchy {
         if length(line.nearest) > 1.0 {
             return;
         }
-        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().map(|x| x as f32));
+        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().each(|x| x as f32));
         let origin = narrow(line.nearest - line.direction * 2.0);
         let ray = Ray::new_inf(origin, narrow(line.direction));
         self.tree.ray_traverse_anyhit(ray, |_, at| {

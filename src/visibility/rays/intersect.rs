@@ -23,7 +23,10 @@ use super::{
     exact::Exact,
     hierarchy::{Hierarchy, Line},
 };
-use crate::view::{Cull, Matrix, View, ViewSet};
+use crate::{
+    num::Each,
+    view::{Cull, Matrix, View, ViewSet},
+};
 
 /// One past the largest depth.
 const DEPTHS: f64 = 4_294_967_296.0;
@@ -128,7 +131,7 @@ pub(super) type Four<N> = [N; 4];
 
 /// Clip coordinates of a point, with the rounding errors of every operation.
 fn clip<N: Arithmetic>(matrix: &Matrix, p: DVec3, number: impl Fn(f64) -> N) -> Four<N> {
-    matrix.map(|m| {
+    matrix.each(|m| {
         let term = |i: usize, x: f64| number(m[i]).times(&number(x));
         term(0, p.x)
             .plus(&term(1, p.y))
@@ -172,7 +175,7 @@ impl<'a> Rays<'a> {
         Self {
             matrix: view.matrix,
             cull: view.cull,
-            size: [set.width, set.height].map(|side| i64::from(side * set.samples)),
+            size: [set.width, set.height].each(|side| i64::from(side * set.samples)),
             positions,
             points: positions
                 .iter()
@@ -235,7 +238,7 @@ impl<'a> Rays<'a> {
 
     /// True where a triangle is counter-clockwise as the viewer sees it, up to rounding.
     pub(super) fn is_front(&self, triangle: [u32; 3]) -> bool {
-        let [a, b, c] = triangle.map(|v| {
+        let [a, b, c] = triangle.each(|v| {
             let [x, y, _, w] = &self.points[v as usize];
             DVec3::new(x.value, y.value, w.value)
         });
@@ -245,9 +248,9 @@ impl<'a> Rays<'a> {
     /// The exact place where a triangle is hit, if it is.
     #[inline]
     pub(super) fn hit(&self, ray: Ray, triangle: [u32; 3]) -> Option<Hit> {
-        let [column, row] = [ray.column, ray.row].map(|n| Rounded::exactly(n as f64));
-        let [width, height] = self.size.map(|n| Rounded::exactly(n as f64));
-        let [a, b, c] = triangle.map(|v| {
+        let [column, row] = [ray.column, ray.row].each(|n| Rounded::exactly(n as f64));
+        let [width, height] = self.size.each(|n| Rounded::exactly(n as f64));
+        let [a, b, c] = triangle.each(|v| {
             let [x, y, z, w] = &self.points[v as usize];
             [
                 width.times(x).minus(&column.times(w)),
@@ -292,9 +295,9 @@ impl<'a> Rays<'a> {
     /// [`Rays::hit`] without doubles and without culling.
     #[cold]
     pub(super) fn exact_hit(&self, ray: Ray, triangle: [u32; 3]) -> Option<Hit> {
-        let [column, row] = [ray.column, ray.row].map(Exact::from);
-        let [width, height] = self.size.map(Exact::from);
-        let corners = triangle.map(|v| {
+        let [column, row] = [ray.column, ray.row].each(Exact::from);
+        let [width, height] = self.size.each(Exact::from);
+        let corners = triangle.each(|v| {
             let [x, y, z, w] = self.exactly(self.positions[v as usize]);
             [
                 &(&width * &x) - &(&column * &w),

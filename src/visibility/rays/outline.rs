@@ -4,7 +4,7 @@
 //! is a hundred million times their error. Pixels, and depths in units of 2^-32.
 
 use super::intersect::{Four, Ray, Rays};
-use crate::num::math::sqrt;
+use crate::num::{Each, math::sqrt};
 
 /// One past the largest depth.
 const DEPTHS: f64 = 4_294_967_296.0;
@@ -29,9 +29,9 @@ pub(super) struct Outline {
 
 impl Outline {
     pub(super) fn new(rays: &Rays<'_>, ray: Ray, triangle: [u32; 3]) -> Self {
-        let [width, height] = rays.size.map(|side| side as f64);
-        let corners = triangle.map(|v| {
-            let [x, y, z, w] = rays.points[v as usize].map(|n| n.value);
+        let [width, height] = rays.size.each(|side| side as f64);
+        let corners = triangle.each(|v| {
+            let [x, y, z, w] = rays.points[v as usize].each(|n| n.value);
             [
                 width * x - ray.column as f64 * w,
                 height * y - ray.row as f64 * w,
@@ -54,7 +54,7 @@ impl Outline {
         // z = alpha a + beta b + gamma w holds at every corner, and a = b = 0 at the centre.
         let [p, q, r] = &corners;
         let determinant = |k: [usize; 3]| {
-            let [p, q, r] = [p, q, r].map(|c| k.map(|i| c[i]));
+            let [p, q, r] = [p, q, r].each(|c| k.each(|i| c[i]));
             p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0])
                 + p[2] * (q[0] * r[1] - q[1] * r[0])
         };
@@ -109,7 +109,7 @@ fn in_front(corners: &[Four<f64>; 3]) -> Vec<Four<f64>> {
         }
         if visible(from) != visible(to) {
             let t = from[2] / (from[2] - to[2]);
-            let crossing = [0, 1, 2, 3].map(|k| from[k] + (to[k] - from[k]) * t);
+            let crossing = [0, 1, 2, 3].each(|k| from[k] + (to[k] - from[k]) * t);
             if crossing[3] > 0.0 {
                 polygon.push(crossing);
             }
