@@ -66,7 +66,7 @@
 //! | room | owns |
 //! |---|---|
 //! | `num` | where a float becomes fixed point, the only callers of sqrt and libm, the scaled frame |
-//! | `parallel` | work on all threads in the order of a list; the only caller of rayon |
+//! | `parallel` | work on all threads in the order of a list; nothing else shares work among threads |
 //! | `geometry` | symmetric 3x3, triangles, boxes, the one tree over triangles: what bound, metric and simplify share |
 //! | `encode` | PNG, npy, JSON, hashes of pixels, contact sheets; whole files or none |
 //! | `mesh` | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
