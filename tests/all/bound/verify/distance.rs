@@ -11,7 +11,7 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::support::{
-    Random, bounded, code, distance_by_descent, expect, faces, folder, lodmark, moved, put,
+    Random, bounded, code, distance_to_all, expect, faces, folder, lodmark, moved, put,
     same_on_all_threads, stdout,
 };
 
@@ -265,9 +265,7 @@ proptest! {
 
     #[test]
     fn no_point_is_farther_than_proven_and_the_farthest_one_is_as_far_as_said(seed: u64) {
-        let slow = |p: DVec3, mesh: &Mesh| {
-            faces(mesh).into_iter().map(|t| distance_by_descent(p, t)).fold(f64::INFINITY, f64::min)
-        };
+        let slow = |p: DVec3, mesh: &Mesh| distance_to_all(p, &faces(mesh));
         let mut random = Random::new(seed, 1);
         let counts = [1 + random.below(4), 1 + random.below(6)];
         let (a, b) = (soup(&mut random, counts[0]), soup(&mut random, counts[1]));
