@@ -134,11 +134,8 @@ impl Projection {
         let own = self.own(at);
         let low = (offsets.min - self.offset) / self.scale - own - spread;
         let high = (offsets.max - self.offset) / self.scale - own + spread;
-        if low > 0.0 {
-            Some((low, 1.0))
-        } else {
-            (high < 0.0).then_some((-high, -1.0))
-        }
+        let back = (high < 0.0).then_some((-high, -1.0));
+        (low > 0.0).then_some((low, 1.0)).or(back)
     }
 
     /// The offset of a point given across and along the direction, along the direction.
