@@ -191,7 +191,7 @@ impl ViewSet {
     /// Refuses sizes that the rasterizer has no bits for.
     ///
     /// # Errors
-    /// [`Error::Usage`] unless `samples` is 1, 2 or 4 and each side has 1 to [`SIDE_LIMIT`] samples.
+    /// [`Error::Usage`] unless `samples` is 1, 2 or 4 and each side has 1 to `SIDE_LIMIT` samples.
     pub fn check_size(&self) -> Result<()> {
         let (width, height, samples) = (self.width, self.height, self.samples);
         if ![1, 2, 4].contains(&samples) {

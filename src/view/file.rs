@@ -197,7 +197,7 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
 /// Reads a view file; lengths in units of the mesh file (see [`ViewSet::enter_frame`]).
 ///
 /// # Errors
-/// [`Error::Io`], or as [`from_json`].
+/// [`Error::Io`], or as `from_json`.
 pub fn read(path: impl AsRef<Path>) -> Result<ViewSet> {
     let path = path.as_ref();
     from_json(&json::read_text(path, SIZE_LIMIT, "view file")?, path)

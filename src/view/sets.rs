@@ -108,7 +108,7 @@ pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
 
 /// The vertices of the octahedron subdivided `k` times; those of `k - 1` come first, in the same order.
 ///
-/// `k` above [`OCTAHEDRON_LIMIT`] counts as the limit.
+/// `k` above `OCTAHEDRON_LIMIT` counts as the limit.
 #[must_use]
 pub fn octahedron(k: u32) -> Vec<DVec3> {
     octahedron_faces(k).0
@@ -213,11 +213,11 @@ pub enum ViewsName {
     Dodecahedron,
     /// 24 directions.
     Rhombicuboctahedron,
-    /// 4^(k+1) + 2 directions, k at most [`OCTAHEDRON_LIMIT`].
+    /// 4^(k+1) + 2 directions, k at most `OCTAHEDRON_LIMIT`.
     Octahedron(u32),
-    /// This many directions along a spiral, 1 to [`SPIRAL_LIMIT`].
+    /// This many directions along a spiral, 1 to `SPIRAL_LIMIT`.
     Spiral(u32),
-    /// The views in a JSON file; see [`mod@file`].
+    /// The views in a JSON file; see `view::file`.
     File(PathBuf),
 }
 

@@ -119,7 +119,7 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewCell> {
 /// Reads a cell file; positions in units of the mesh file (see [`ViewCell::enter_frame`]).
 ///
 /// # Errors
-/// [`Error::Io`], or as [`from_json`].
+/// [`Error::Io`], or as `from_json`.
 pub fn read(path: impl AsRef<Path>) -> Result<ViewCell> {
     let path = path.as_ref();
     from_json(&json::read_text(path, SIZE_LIMIT, "cell file")?, path)

@@ -107,7 +107,7 @@ impl ViewCell {
     /// A convex polygon by its corners in order, in either sense.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the corner concerned: fewer than 3 or more than [`CORNER_LIMIT`] corners, a coordinate that
+    /// [`Error::Usage`] with the corner concerned: fewer than 3 or more than `CORNER_LIMIT` corners, a coordinate that
     /// is not finite, a corner off the plane of the others, no area, or a polygon that is not convex.
     pub fn polygon(corners: &[DVec3]) -> Result<Self> {
         corner_count(corners, 3, "polygon")?;
@@ -128,7 +128,7 @@ impl ViewCell {
     /// The convex hull of points; those inside it or inside a face or an edge are dropped.
     ///
     /// # Errors
-    /// [`Error::Usage`]: fewer than 4 or more than [`CORNER_LIMIT`] points, a coordinate that is not finite, points in
+    /// [`Error::Usage`]: fewer than 4 or more than `CORNER_LIMIT` points, a coordinate that is not finite, points in
     /// one plane, or points so nearly in one plane that their faces cannot be told apart.
     pub fn polyhedron(points: &[DVec3]) -> Result<Self> {
         corner_count(points, 4, "polyhedron")?;

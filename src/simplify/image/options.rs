@@ -162,9 +162,7 @@ pub struct ImageOptions {
     /// Placement of the new vertex (section 4.1).
     pub placement: MemorylessOptions,
     /// Weight of the distance from the original that the volume swept by a collapse makes, as a share of the whole,
-    /// against the share of the image error; 0 is the published method. See [`ImageDriven::with_swept_price`].
-    ///
-    /// [`ImageDriven::with_swept_price`]: super::ImageDriven::with_swept_price
+    /// against the share of the image error; 0 is the published method. See `ImageDriven::with_swept_price`.
     #[serde(default)]
     pub swept_weight: f64,
     /// Price edges by every n-th view until they come to the front of the queue, and only there by all views; 1 is the

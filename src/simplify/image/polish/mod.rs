@@ -36,7 +36,7 @@ pub struct Polish {
     /// Cameras are turned after every n-th sweep; 0 is never.
     pub cameras_every: u32,
     /// Weight of the share of the distance from the original against the share of the image error in a change;
-    /// 0 is nothing. See [`DistancePenalty`].
+    /// 0 is nothing. See `DistancePenalty`.
     pub deviation_weight: f64,
 }
 
