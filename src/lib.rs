@@ -59,6 +59,7 @@
 //!                            |
 //!                            +-> view -> raster -> metric ------+
 //!                            |             +----> visibility ---+     pictures
+//!                            |             +----> validate (why a pixel differs) ------------------------> cli
 //!                            +-> bound  (view cells, envelopes)-+
 //!                            +-> collapse ----------------------+-> simplify -> selfcheck, front -> cli
 //! ```
@@ -74,7 +75,8 @@
 //! | `view` | cameras, the minimum bounding sphere, view sets and view files |
 //! | `raster` | `draw`: clip, snap, spans, depth, ids, shading; `unrender/buckets` and `unrender/layers`, two engines with the same bits |
 //! | `metric` | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference; the report of candidates against a reference |
-//! | `visibility` | ID buffers of cameras all around: V(t), V(M), partial counts, hidden parts; the proof of ID buffers by ray casting |
+//! | `visibility` | ID buffers of cameras all around: V(t), V(M), partial counts, hidden parts |
+//! | `validate` | why a pixel of an ID buffer differs: the proof of our own by ray casting |
 //! | `bound` | guarantees: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
 //! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay; no word about pictures |
 //! | `simplify` | one folder a method: options, run, report; targets and outcome |
@@ -166,6 +168,10 @@ mod selfcheck;
 pub mod simplify;
 #[cfg(not(feature = "internals"))]
 mod simplify;
+#[cfg(feature = "internals")]
+pub mod validate;
+#[cfg(not(feature = "internals"))]
+mod validate;
 #[cfg(feature = "internals")]
 pub mod view;
 #[cfg(not(feature = "internals"))]

@@ -367,7 +367,7 @@ mod tests {
             });
             assert!(doubled.into_iter().eq((0..len).map(|i| 2 * i)));
             let sum = sum_mut(&mut items, &|i, item| *item as i64 - i as i64);
-            assert_eq!(sum, (0..len as i64).sum());
+            assert_eq!(sum, (0..len as i64).sum::<i64>());
         }
     }
 
@@ -390,16 +390,12 @@ mod tests {
 
     #[test]
     fn an_error_ends_the_work() {
-        let usage = |i: usize| Err(Error::Usage(i.to_string()));
-        let found = try_map(1_000, |i| if i == 700 { usage(i) } else { Ok(i) });
+        let usage = |i: usize| Error::Usage(i.to_string());
+        let found = try_map(1_000, |i| if i == 700 { Err(usage(i)) } else { Ok(i) });
         assert!(matches!(found, Err(Error::Usage(i)) if i == "700"));
         let mut items = [0; 100];
-        let chunks = try_for_chunks(
-            &mut items,
-            10,
-            2,
-            |i, _| if i == 3 { usage(i) } else { Ok(()) },
-        );
+        let third = |i, _: &mut [i32]| if i == 3 { Err(usage(i)) } else { Ok(()) };
+        let chunks = try_for_chunks(&mut items, 10, 2, third);
         assert!(matches!(chunks, Err(Error::Usage(i)) if i == "3"));
         assert!(try_map(3, Ok).is_ok_and(|all| all == [0, 1, 2]));
     }

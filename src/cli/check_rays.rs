@@ -10,8 +10,8 @@ use crate::{
     encode::png,
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
+    validate::rays::{Class, Classified, RayCaster, Shown, Tally, cap},
     view::{self, Cull, Projection, Sphere, ViewSet, ViewsName, frame_of},
-    visibility::rays::{Class, Classified, RayCaster, Shown, Tally, cap},
 };
 
 /// Cast a ray through every pixel centre and hold the rasterizer's ID buffer against what it hits; exit code 1 when a

@@ -104,8 +104,9 @@ mod tests {
             (b.diagonal(), b.longest_axis()),
             (DVec3::new(1.0, 5.0, 5.0), 1)
         );
-        assert_eq!(b.squared_distance(DVec3::new(4.0, 9.0, 2.0)), 25.0);
-        assert_eq!(b.squared_distance(DVec3::splat(0.5)), 0.0);
+        let squared = |p| b.squared_distance(p).to_bits();
+        assert_eq!(squared(DVec3::new(4.0, 9.0, 2.0)), 25_f64.to_bits());
+        assert_eq!(squared(DVec3::splat(0.5)), 0_f64.to_bits());
         assert!(b.may_reach(DVec3::new(4.0, 9.0, 2.0), 4.0));
         assert!(!b.may_reach(DVec3::new(4.0, 9.0, 2.0), 3.0));
     }

@@ -9,7 +9,7 @@
 //! Two sets of [`MeasureOptions`]: the default corrects what the paper leaves to chance, [`MeasureOptions::paper`] follows it to the
 //! letter. Deviations are told where they are made.
 //!
-//! [`rays`] proves the ID buffers right by ray casting.
+//! [`crate::validate::rays`] proves the ID buffers right by ray casting.
 
 mod cameras;
 mod color;
@@ -22,7 +22,6 @@ mod options;
 mod partial;
 mod partial_file;
 pub mod ply;
-pub mod rays;
 mod seen_parts;
 mod subdivide;
 mod visibility_table;

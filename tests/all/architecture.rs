@@ -31,6 +31,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "validate",
+        &[
+            "error", "progress", "num", "geometry", "mesh", "view", "raster",
+        ],
+    ),
+    (
         "bound",
         &["error", "progress", "num", "encode", "geometry", "mesh"],
     ),
@@ -105,6 +111,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "raster",
             "metric",
             "visibility",
+            "validate",
             "bound",
             "collapse",
             "simplify",

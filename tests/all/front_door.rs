@@ -7,7 +7,7 @@ use std::{
     process::Command,
 };
 
-use crate::support::{folder, meshes, put};
+use crate::support::{folder, meshes, put, say};
 
 /// Items that the front page of the documentation may show; raised with a reason.
 const FRONT_PAGE: usize = 40;
@@ -155,7 +155,9 @@ fn the_documentation_shows_few_items() {
         .filter(is_item)
         .collect();
     let all = all.len() + hidden(&root().join("src"));
-    println!("front page: {shown} items, documentation: {all} items");
+    say(&format!(
+        "front page: {shown} items, documentation: {all} items"
+    ));
     assert!(shown <= FRONT_PAGE, "the front page shows {shown} items");
     assert!(all <= ALL_ITEMS, "the documentation has {all} items");
     assert!(

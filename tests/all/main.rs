@@ -13,5 +13,6 @@ mod metric;
 mod raster;
 mod simplify;
 mod support;
+mod validate;
 mod view;
 mod visibility;

@@ -260,7 +260,7 @@ mod tests {
             (x >> 8) % below
         };
         let ends = |face: usize| {
-            if face % 5 == 0 {
+            if face.is_multiple_of(5) {
                 0..2
             } else {
                 face % 2..face % 2 + 1

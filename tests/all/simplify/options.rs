@@ -73,7 +73,8 @@ fn a_step_that_means_nothing_to_the_method_is_refused_by_name() {
     let distance = ToleranceOptions::new(Distance::OfDiagonal(0.1));
     let cell = ViewCell::point(glam::DVec3::ONE).expect("finite");
     let bound = ViewBoundedOptions::new(cell, 1.0);
-    let steps: [(&str, fn(Options) -> Options); 5] = [
+    type Step = fn(Options) -> Options;
+    let steps: [(&str, Step); 5] = [
         ("preset", |o| o.preset(Preset::Fast)),
         ("shading", |o| o.shading(DrivingShading::Mixed)),
         ("views", |o| o.views(ViewsName::Dodecahedron)),

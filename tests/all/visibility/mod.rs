@@ -1,11 +1,7 @@
-//! Visibility: the measure against brute force and analytic values, surveys in parts, hidden parts, and ID
-//! buffers against rays.
+//! Visibility: the measure against brute force and analytic values, surveys in parts, hidden parts.
 
-pub(crate) mod embree;
 mod measure;
-mod planted_bugs;
 mod products;
-pub(crate) mod rays;
 mod survey;
 
 use glam::DVec3;

@@ -6,8 +6,8 @@ use lodmark::{
     mesh::{Mesh, MeshParts, generate},
     num::{Precision, fixed::SubpixelBits},
     raster::{self, Grid, SampleKey},
+    validate::rays::{Class, RayCaster, Tally},
     view::{Cull, Eye, Light, Projection, Shading, Sphere, View, ViewSet, frame_of, sets},
-    visibility::rays::{Class, RayCaster, Tally},
 };
 use proptest::prelude::*;
 

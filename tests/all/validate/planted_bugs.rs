@@ -6,13 +6,13 @@ use lodmark::{
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
     raster::{self, Grid, SampleKey},
+    validate::rays::{Class, RayCaster, TOLERANCE, cap},
     view::{Cull, Projection, View, ViewSet},
-    visibility::rays::{Class, RayCaster, TOLERANCE, cap},
 };
 
 use crate::{
     support::scene_of,
-    visibility::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers},
+    validate::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers},
 };
 
 /// Squares of `step` pixels whose corners are pixel centres, every fourth triangle a second time.

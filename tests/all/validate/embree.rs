@@ -14,11 +14,9 @@ use lodmark::{
     mesh::{Mesh, generate},
     num::fixed::SubpixelBits,
     raster::{self, Grid, SampleKey},
+    validate::rays::{Class, RayCaster, Tally},
     view::{Eye, Projection, Sphere, ViewSet, file, frame_of, sets},
-    visibility::{
-        self, MeasureOptions,
-        rays::{Class, RayCaster, Tally},
-    },
+    visibility::{self, MeasureOptions},
 };
 
 use crate::{
@@ -27,7 +25,7 @@ use crate::{
         oracle::{embree, oracle},
         say, scene_of,
     },
-    visibility::rays::framed,
+    validate::rays::framed,
 };
 
 /// True where the measurements of the acceptance are asked for.
