@@ -47,7 +47,7 @@ fn stranger() -> PathBuf {
     fs::create_dir_all(&folder).expect("a folder");
     let mut manifest = format!(
         "[package]\nname = \"stranger\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
-         lodmark = {{ path = {:?}, default-features = false }}\n\n[profile.dev]\ndebug = false\nincremental = false\n",
+         lodmark = {{ path = {:?}, default-features = false }}\n\n[profile.dev]\ndebug = false\nincremental = false\nopt-level = 1\n",
         root()
     );
     for (name, _) in EXAMPLES {
