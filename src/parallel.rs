@@ -102,32 +102,49 @@ pub(crate) fn collect<T: Send>(
     least: usize,
     fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
-    let parts: Mutex<Vec<(usize, Vec<T>)>> = Mutex::new(Vec::new());
+    let parts = Parts::default();
     for_ranges(len, least, &|range| {
         let (start, mut part) = (range.start, Vec::new());
         fill(range, &mut part);
-        let mut parts = parts.lock().unwrap_or_else(PoisonError::into_inner);
-        parts.push((start, part));
+        parts.add(start, part);
     });
-    let parts = parts.into_inner().unwrap_or_else(PoisonError::into_inner);
-    in_order(parts)
+    parts.in_order()
 }
 
-/// Joins parts in the order of their starts.
-fn in_order<T>(mut parts: Vec<(usize, Vec<T>)>) -> Vec<T> {
-    let starts: Vec<usize> = parts.iter().map(|(start, _)| *start).collect();
-    let order = ascending(starts);
-    let mut all = Vec::new();
-    for (turn, i) in order.into_iter().enumerate() {
-        let part = std::mem::take(&mut parts[i].1);
-        if turn == 0 {
-            all = part;
-            all.reserve_exact(parts.iter().map(|(_, part)| part.len()).sum());
-        } else {
-            all.extend(part);
-        }
+/// Results of ranges with the starts of the ranges, as they come.
+struct Parts<T>(Mutex<(Vec<usize>, Vec<Vec<T>>)>);
+
+impl<T> Default for Parts<T> {
+    fn default() -> Self {
+        Self(Mutex::new((Vec::new(), Vec::new())))
     }
-    all
+}
+
+impl<T> Parts<T> {
+    fn add(&self, start: usize, part: Vec<T>) {
+        let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        parts.0.push(start);
+        parts.1.push(part);
+    }
+
+    /// Joins the parts in the order of their starts.
+    fn in_order(self) -> Vec<T> {
+        let (starts, mut parts) = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut len = 0;
+        for part in &parts {
+            len += part.len();
+        }
+        let mut all = Vec::new();
+        for i in ascending(starts) {
+            if all.is_empty() {
+                std::mem::swap(&mut all, &mut parts[i]);
+                all.reserve_exact(len - all.len());
+            } else {
+                all.append(&mut parts[i]);
+            }
+        }
+        all
+    }
 }
 
 /// The places of `starts` in ascending order.
