@@ -9,7 +9,7 @@
 //! Two sets of [`MeasureOptions`]: the default corrects what the paper leaves to chance, [`MeasureOptions::paper`] follows it to the
 //! letter. Deviations are told where they are made.
 //!
-//! [`crate::validate::rays`] proves the ID buffers right by ray casting.
+//! The room `validate` proves the ID buffers right by ray casting.
 
 mod cameras;
 mod color;
