@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::{Shape, ViewCell};
-use crate::num::math::length;
+use crate::num::{Frame, math::length};
 
 /// Upper bound of the rounding error of a signed distance, as a multiple of the sum of the magnitudes of the
 /// coordinates of the difference it is computed from.
@@ -96,12 +96,9 @@ fn between(points: &[DVec3], corners: &[DVec3]) -> f64 {
     let mut nearest = p - c;
     let mut proved = 0.0;
     for _ in 0..STEPS {
-        let size = length(nearest);
-        // 0, or beyond what can be squared: nothing more can be proved.
-        if !(size > 0.0 && size < f64::INFINITY) {
+        let Some((size, along)) = size_and_direction(nearest) else {
             break;
-        }
-        let along = nearest / size;
+        };
         let slab = Slab::new(points, corners, along);
         if slab.width > proved {
             proved = slab.width;
@@ -118,6 +115,20 @@ fn between(points: &[DVec3], corners: &[DVec3]) -> f64 {
         nearest = next;
     }
     proved
+}
+
+/// Length and unit direction of `d`, also where its square would be subnormal or overflow: a direction longer than 1
+/// would prove too much. `None` where there is none.
+fn size_and_direction(d: DVec3) -> Option<(f64, DVec3)> {
+    let square = d.dot(d);
+    let frame = if square > 1e-280 && square < 1e280 {
+        Frame::default()
+    } else {
+        Frame::for_size(d.abs().max_element())
+    };
+    let near_one = frame.enter(d);
+    let size = length(near_one);
+    (size > 0.0 && size < f64::INFINITY).then(|| (frame.leave_length(size, 1), near_one / size))
 }
 
 /// A unit direction along which the points lie beyond the corners by at least `width`.
