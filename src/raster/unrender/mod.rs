@@ -36,7 +36,8 @@ pub struct SceneEdit {
     pub added: Vec<Added>,
     /// New positions; every triangle at such a vertex is in `removed`.
     pub moved: Vec<(u32, DVec3)>,
-    /// New unit vertex normals, where a view is Gouraud shaded; every triangle at such a vertex is in `removed`.
+    /// Where a view is Gouraud shaded: unit normals of all vertices that move (the light falls on them from elsewhere,
+    /// even where their normals stay as they are) or whose normals change; every triangle at them is in `removed`.
     pub normals: Vec<(u32, DVec3)>,
 }
 
@@ -146,6 +147,8 @@ impl Model {
             self.positions[v as usize] = p;
         }
         if !self.normals.is_empty() {
+            let shaded = |v: u32| edit.normals.iter().any(|n| n.0 == v);
+            debug_assert!(edit.moved.iter().all(|m| shaded(m.0)));
             for &(v, n) in &edit.normals {
                 self.normals[v as usize] = n;
             }

@@ -10,6 +10,8 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
+use crate::support::at;
+
 /// A mesh under random surgery, kept without any incremental structure.
 #[derive(Clone, Debug)]
 struct Patient {
@@ -215,7 +217,10 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
         .collect();
     let (old, new) = (before.scene(), after.scene());
     let normals: Vec<(u32, DVec3)> = vertices
-        .filter(|&v| gouraud && old.normals()[v as usize] != new.normals()[v as usize])
+        .filter(|&v| {
+            let changed = old.normals()[v as usize] != new.normals()[v as usize];
+            gouraud && (changed || moved.iter().any(|m| m.0 == v))
+        })
         .map(|v| (v, new.normals()[v as usize]))
         .collect();
     let touched = |corners: Option<[u32; 3]>| {
@@ -245,6 +250,60 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
         }
     }
     found
+}
+
+/// The sum of the area normals of a closed fan does not depend on where its middle is: it moves, and its normal stays.
+#[test]
+fn a_vertex_that_moves_under_an_unchanged_normal_is_lit_anew() {
+    let rim = [at(-0.5, -0.25, 0.0), at(0.5, -0.25, 0.0), at(0.0, 0.5, 0.0)];
+    let before = Patient {
+        positions: [rim.as_slice(), &[at(0.0, 0.0, 0.25)]].concat(),
+        triangles: vec![Some([0, 1, 3]), Some([1, 2, 3]), Some([2, 0, 3])],
+        colors: None,
+    };
+    let mut after = before.clone();
+    after.positions[3] = at(0.125, 0.0, 0.5);
+    let normals = [&before, &after].map(|patient| patient.scene().normals()[3]);
+    assert_eq!(normals[0], normals[1]);
+    let sphere = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.7,
+    };
+    let gouraud = Shading {
+        interpolation: Interpolation::Gouraud,
+        ..Shading::default()
+    };
+    let view = View::around(
+        &sphere,
+        at(0.5, 0.25, 1.0),
+        [0, 1],
+        [32, 24],
+        Projection::Perspective,
+    );
+    let set = ViewSet {
+        width: 32,
+        height: 24,
+        samples: 1,
+        subpixel: SubpixelBits::Eight,
+        background: 128,
+        views: vec![View {
+            shading: gouraud,
+            ..view.expect("a camera")
+        }],
+    };
+    let edit = difference(&before, &after, true);
+    let reference = [raster::luma_sums(&before.scene(), &set.views[0], &set)];
+    let expected = raster::luma(&after.scene(), &set.views[0], &set).tones;
+    let model = || Model::new(&before.scene(), &set);
+    let engines: [Box<dyn Unrender>; 2] = [
+        Box::new(BucketEngine::new(model(), &set, &reference)),
+        Box::new(LayerEngine::new(model(), &set, &reference)),
+    ];
+    for mut engine in engines {
+        let mut scratch = engine.scratch();
+        engine.commit(&edit, &mut scratch);
+        assert_eq!(engine.luma(0), expected);
+    }
 }
 
 proptest! {
