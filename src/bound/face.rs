@@ -26,7 +26,6 @@ pub struct FaceInterval {
 
 /// The planes across the unit vector `direction` that a face with these corners may be projected on, seen from `cell`
 /// within `aperture`. Nothing is left where part of the face lies in the cell, unless that part lies in the plane.
-#[must_use]
 pub fn face_interval(
     cell: &ViewCell,
     corners: &[DVec3; 3],
@@ -57,7 +56,6 @@ pub fn face_interval(
 
 /// The offsets that move no point of a face by more than `distance sin(aperture)`, where no viewer is closer to the
 /// face than `distance`: all valid, not all that are.
-#[must_use]
 pub fn conservative_interval(
     distance: f64,
     corners: &[DVec3; 3],

@@ -28,7 +28,6 @@ pub struct Claims {
 ///
 /// A vertex is gone where no vertex of `low` has its position to the last bit. Cost: that of an exact error for each
 /// vertex and edge.
-#[must_use]
 pub fn claims(
     reference: &Mesh,
     low: &Mesh,

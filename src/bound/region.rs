@@ -117,7 +117,6 @@ pub fn shell(
 
 /// The plane that shows most of a cell beside a point: that of both for a segment or line, else one that holds the way
 /// from the point to the cell.
-#[must_use]
 pub fn profile_normal(cell: &ViewCell, point: DVec3) -> DVec3 {
     let (toward, along) = match cell.shape() {
         Shape::Point(at) => (*at - point, DVec3::ZERO),

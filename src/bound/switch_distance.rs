@@ -12,7 +12,6 @@ use crate::{
 
 /// From which distance on a point and its replacement `displacement` away are seen less than the aperture apart: the
 /// distance of the viewer from the middle between both, in the units of the displacement. Infinite for Theta = 0.
-#[must_use]
 pub fn safe_view_distance(displacement: f64, aperture: Aperture) -> f64 {
     if displacement <= 0.0 {
         return 0.0;
@@ -23,7 +22,6 @@ pub fn safe_view_distance(displacement: f64, aperture: Aperture) -> f64 {
 /// From which distance on no point of a replacement is seen off its place by more than the aperture, for a viewer at
 /// that distance or farther from *every* point of the original: `displacement` is the largest distance between a point
 /// of the original and its replacement. The middle between both may be nearer than the original by half of that.
-#[must_use]
 pub fn switch_distance(displacement: f64, aperture: Aperture) -> f64 {
     if displacement <= 0.0 {
         return 0.0;

@@ -14,14 +14,12 @@ pub struct Box3 {
 impl Box3 {
     /// The box of one point.
     #[inline]
-    #[must_use]
     pub fn at(p: DVec3) -> Self {
         Self { low: p, high: p }
     }
 
     /// The box of points; `None` without any.
     #[inline]
-    #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
@@ -30,7 +28,6 @@ impl Box3 {
 
     /// The box of the corners of a triangle.
     #[inline]
-    #[must_use]
     pub fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
         Self {
             low: a.min(b).min(c),
@@ -40,7 +37,6 @@ impl Box3 {
 
     /// The smallest box around two.
     #[inline]
-    #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -50,14 +46,12 @@ impl Box3 {
 
     /// The difference of the corners.
     #[inline]
-    #[must_use]
     pub fn diagonal(&self) -> DVec3 {
         self.high - self.low
     }
 
     /// The axis along which the box is longest; the first of equals.
     #[inline]
-    #[must_use]
     pub fn longest_axis(&self) -> usize {
         let d = self.diagonal();
         if d.x >= d.y && d.x >= d.z {
@@ -71,7 +65,6 @@ impl Box3 {
 
     /// Squared distance from `p`; 0 inside.
     #[inline]
-    #[must_use]
     pub fn squared_distance(&self, p: DVec3) -> f64 {
         let d = (self.low - p).max(p - self.high).max(DVec3::ZERO);
         d.dot(d)
@@ -79,7 +72,6 @@ impl Box3 {
 
     /// False where a point is farther than `reach` from the box along an axis.
     #[inline]
-    #[must_use]
     pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
         let (below, above) = (self.low - p, p - self.high);
         below.x <= reach

@@ -9,7 +9,6 @@ pub struct Sym3(pub [f64; 6]);
 impl Sym3 {
     /// The outer product `n n^T`.
     #[inline]
-    #[must_use]
     pub fn outer(n: DVec3) -> Self {
         Self([
             n.x * n.x,
@@ -23,7 +22,6 @@ impl Sym3 {
 
     /// The product with a vector.
     #[inline]
-    #[must_use]
     pub fn times(&self, v: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.0;
         DVec3::new(
@@ -35,7 +33,6 @@ impl Sym3 {
 
     /// The sum of the diagonal.
     #[inline]
-    #[must_use]
     pub fn trace(&self) -> f64 {
         let [xx, _, _, yy, _, zz] = self.0;
         xx + yy + zz

@@ -15,14 +15,12 @@ use crate::num::math::length;
 
 /// The normal of a triangle, twice as long as its area is large.
 #[inline]
-#[must_use]
 pub fn area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
 /// Twice the area of a triangle.
 #[inline]
-#[must_use]
 pub fn double_area(corners: [DVec3; 3]) -> f64 {
     length(area_normal(corners))
 }
@@ -43,7 +41,6 @@ pub struct Triangle {
 
 impl Triangle {
     /// Orders the corners.
-    #[must_use]
     pub fn new(mut corners: [DVec3; 3]) -> Self {
         let mut turned = false;
         // Three exchanges sort three corners, and each turns the triangle over.
@@ -58,34 +55,29 @@ impl Triangle {
 
     /// The normal, twice as long as the area is large, of the side that the corners as given go around
     /// counter-clockwise.
-    #[must_use]
     pub fn area_normal(&self) -> DVec3 {
         let normal = area_normal(self.corners);
         if self.turned { -normal } else { normal }
     }
 
     /// The corners, in ascending order of their coordinates.
-    #[must_use]
     pub fn corners(&self) -> [DVec3; 3] {
         self.corners
     }
 
     /// The smallest box around it.
     #[inline]
-    #[must_use]
     pub fn bounds(&self) -> Box3 {
         Box3::of_triangle(self.corners)
     }
 
     /// Twice the area.
-    #[must_use]
     pub fn double_area(&self) -> f64 {
         double_area(self.corners)
     }
 
     /// The closest point, inside the bounding box of the corners, and its squared distance.
     #[inline]
-    #[must_use]
     pub fn closest(&self, p: DVec3) -> (DVec3, f64) {
         let [a, b, c] = self.corners;
         let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -152,7 +144,6 @@ fn closest_on_segment(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
 
 /// The point of a triangle closest to `p`, and its squared distance: both in the units of the positions, which should
 /// have magnitudes around 1 ([`Frame`](crate::num::Frame)): squares of squares must neither overflow nor vanish.
-#[must_use]
 pub fn closest_point(p: DVec3, corners: [DVec3; 3]) -> (DVec3, f64) {
     Triangle::new(corners).closest(p)
 }

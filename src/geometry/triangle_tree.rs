@@ -69,7 +69,6 @@ pub struct TriangleTree<T = Triangle> {
 
 impl<T: TreeItem> TriangleTree<T> {
     /// Builds the tree by halving at the median of the longest side; O(n log n). `None` without triangles.
-    #[must_use]
     pub fn of(mut items: Vec<T>) -> Option<Self> {
         if items.is_empty() {
             return None;
@@ -81,21 +80,18 @@ impl<T: TreeItem> TriangleTree<T> {
 
     /// A triangle of the tree.
     #[inline]
-    #[must_use]
     pub fn item(&self, index: u32) -> &T {
         &self.items[index as usize]
     }
 
     /// Squared distance from `p` to the triangles and the index of a triangle of the tree that has it. `near` is a
     /// guess of that triangle: a good one saves time and changes no distance.
-    #[must_use]
     pub fn squared_distance(&self, p: DVec3, near: u32) -> (f64, u32) {
         self.search(p, (self.item(near).squared_distance(p), near))
     }
 
     /// A triangle whose squared distance from `p` is below `limit`, the nearest one; `None` where there is none. `near`
     /// is a guess that saves time.
-    #[must_use]
     pub fn nearest_within(&self, p: DVec3, near: Option<u32>, limit: f64) -> Option<u32> {
         const NONE: u32 = u32::MAX;
         let mut best = (limit, NONE);
@@ -150,20 +146,17 @@ impl<T: TreeItem> TriangleTree<T> {
 
 impl TriangleTree {
     /// The tree of triangles by their corners; `None` without any. O(n log n).
-    #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>) -> Option<Self> {
         Self::of(corners.into_iter().map(Triangle::new).collect())
     }
 
     /// The corners of a triangle of the tree, in ascending order of their coordinates.
-    #[must_use]
     pub fn corners(&self, index: u32) -> [DVec3; 3] {
         self.item(index).corners()
     }
 
     /// The point of the triangles nearest to `p`, and the index of a triangle that has it. `near` as for
     /// [`TriangleTree::squared_distance`], but it may decide between points at the same distance.
-    #[must_use]
     pub fn nearest(&self, p: DVec3, near: u32) -> (DVec3, u32) {
         let (_, index) = self.squared_distance(p, near);
         (self.item(index).closest(p).0, index)
@@ -171,7 +164,6 @@ impl TriangleTree {
 
     /// True where a triangle within the root of `squared` of `p` has a normal along `direction`: their product is
     /// positive.
-    #[must_use]
     pub fn looks_along(&self, p: DVec3, direction: DVec3, squared: f64) -> bool {
         let mut stack = [0_u32; DEPTH + 1];
         let mut height = 1;

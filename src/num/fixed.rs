@@ -71,7 +71,6 @@ impl TryFrom<u32> for SubpixelBits {
 
 /// Depth in [0, 1] as a multiple of 2^-32, rounded down and clamped; 0 is the near plane.
 #[inline]
-#[must_use]
 pub fn depth(z01: f64) -> u32 {
     // `as` saturates: below 0 gives 0, above the range u32::MAX.
     (z01 * 4_294_967_296.0) as u32
@@ -79,14 +78,12 @@ pub fn depth(z01: f64) -> u32 {
 
 /// An intensity in [0, 1] as an 8-bit level, rounded to nearest (halves up) and clamped.
 #[inline]
-#[must_use]
 pub fn level(intensity: f64) -> u8 {
     (intensity * 255.0 + 0.5) as u8
 }
 
 /// Luma of 8-bit red, green and blue: the NTSC weights in 16 bits.
 #[inline]
-#[must_use]
 pub const fn luma(rgb: [u8; 3]) -> u8 {
     ((19_595 * rgb[0] as u32 + 38_470 * rgb[1] as u32 + 7_471 * rgb[2] as u32 + 32_768) >> 16) as u8
 }
@@ -101,7 +98,6 @@ impl Weights31 {
     pub const ONE: u32 = 1 << 31;
 
     /// The nearest weights that are not negative and have a sum of at most 1; NaN counts as 0.
-    #[must_use]
     pub fn new([u, v]: [f64; 2]) -> Self {
         let fixed = |x: f64| (x.clamp(0.0, 1.0) * f64::from(Self::ONE)).round() as u32;
         let u = fixed(u);
@@ -109,19 +105,16 @@ impl Weights31 {
     }
 
     /// As numbers from 0 to 1.
-    #[must_use]
     pub fn get(self) -> [f64; 2] {
         self.0.map(|x| f64::from(x) / f64::from(Self::ONE))
     }
 
     /// In units of 2^-31.
-    #[must_use]
     pub const fn bits(self) -> [u32; 2] {
         self.0
     }
 
     /// From units of 2^-31; `None` where the weights have a sum above 1.
-    #[must_use]
     pub fn from_bits(bits: [u32; 2]) -> Option<Self> {
         let sum = u64::from(bits[0]) + u64::from(bits[1]);
         (sum <= u64::from(Self::ONE)).then_some(Self(bits))

@@ -48,7 +48,6 @@ pub struct Frame {
 
 impl Frame {
     /// The frame in which a length of `size` file units lies in [0.5, 1); the identity for 0 and non-finite sizes.
-    #[must_use]
     pub fn for_size(size: f64) -> Self {
         if size > 0.0 && size.is_finite() {
             Self {
@@ -60,31 +59,26 @@ impl Frame {
     }
 
     /// From file units to frame units; exact.
-    #[must_use]
     pub fn enter(self, p: DVec3) -> DVec3 {
         self.scaled(p, -self.exponent)
     }
 
     /// From frame units to file units; exact.
-    #[must_use]
     pub fn leave(self, p: DVec3) -> DVec3 {
         self.scaled(p, self.exponent)
     }
 
     /// A length (or any scalar of dimension length^`power`) from frame units to file units; exact.
-    #[must_use]
     pub fn leave_length(self, x: f64, power: i32) -> f64 {
         scale_by_power_of_two(x, self.exponent * power)
     }
 
     /// A length from file units to frame units; exact.
-    #[must_use]
     pub fn enter_length(self, x: f64) -> f64 {
         scale_by_power_of_two(x, -self.exponent)
     }
 
     /// The frame position nearest to `p` that `precision` can store in file units; `None` where it is not finite.
-    #[must_use]
     pub fn round(self, p: DVec3, precision: Precision) -> Option<DVec3> {
         let file = precision.round_vector(self.leave(p));
         if file.is_finite() {

@@ -7,7 +7,6 @@ use glam::DVec3;
 
 /// Correctly rounded square root. Negative input gives NaN.
 #[inline]
-#[must_use]
 #[expect(clippy::disallowed_methods, reason = "this is the one caller")]
 pub fn sqrt(x: f64) -> f64 {
     x.sqrt()
@@ -15,14 +14,12 @@ pub fn sqrt(x: f64) -> f64 {
 
 /// Euclidean length of `v`.
 #[inline]
-#[must_use]
 pub fn length(v: DVec3) -> f64 {
     sqrt(v.dot(v))
 }
 
 /// `v / |v|`, or `None` where `v` has no direction (zero, or a component that is not finite).
 #[inline]
-#[must_use]
 pub fn unit(v: DVec3) -> Option<DVec3> {
     let l = length(v);
     if l > 0.0 && l < f64::INFINITY {
@@ -33,49 +30,41 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
 }
 
 /// Sine.
-#[must_use]
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)
 }
 
 /// Cosine.
-#[must_use]
 pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
 /// Tangent.
-#[must_use]
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
 }
 
 /// Angle of the point `(x, y)`, in (-pi, pi].
-#[must_use]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
 /// Arc sine, in [-pi/2, pi/2]; NaN beyond -1 and 1.
-#[must_use]
 pub fn asin(x: f64) -> f64 {
     libm::asin(x)
 }
 
 /// Cube root.
-#[must_use]
 pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)
 }
 
 /// Logarithm to base 10.
-#[must_use]
 pub fn log10(x: f64) -> f64 {
     libm::log10(x)
 }
 
 /// `x` to a whole power, by squaring in one written order.
-#[must_use]
 pub fn power(x: f64, exponent: u32) -> f64 {
     let (mut result, mut square, mut rest) = (1.0, x, exponent);
     while rest > 0 {
@@ -90,7 +79,6 @@ pub fn power(x: f64, exponent: u32) -> f64 {
 
 /// `x * 2^exponent`, exact unless the result overflows or becomes subnormal.
 #[inline]
-#[must_use]
 pub fn scale_by_power_of_two(x: f64, exponent: i32) -> f64 {
     libm::ldexp(x, exponent)
 }

@@ -45,7 +45,6 @@ pub struct AngleLimit {
 impl AngleLimit {
     /// The limit `angle` (radians, in [0, pi/2)) for viewers in `cell` of a surface, in the same units; the rounding of
     /// coordinates is paid for, so that there should be no common offset to them. O(n).
-    #[must_use]
     pub fn new(originals: &[[DVec3; 3]], cell: &ViewCell, angle: f64) -> Self {
         let sine = sin(angle);
         // An endless cell is told by one of its points, wherever that is.

@@ -120,7 +120,6 @@ impl Sector {
 impl Layout {
     /// Lays out a collapse; `None` where the faces form no disc, are not all turned the same way, or are folded, before
     /// or after.
-    #[must_use]
     pub fn new(collapse: &Collapse<'_>) -> Option<Self> {
         let is_end = |v: &u32| *v == collapse.keep || *v == collapse.gone;
         let mut sectors = Vec::with_capacity(collapse.removed.len());

@@ -93,7 +93,6 @@ pub struct Correspondence {
 
 impl Correspondence {
     /// Every triangle stands for itself, under its index as the face's id; `alive` says which ones exist. O(n).
-    #[must_use]
     pub fn new(originals: Vec<[DVec3; 3]>, alive: impl Fn(u32) -> bool) -> Self {
         let faces = (0..originals.len() as u32)
             .map(|t| FacePieces {
@@ -110,7 +109,6 @@ impl Correspondence {
     }
 
     /// The triangles of a mesh, each standing for itself. O(n).
-    #[must_use]
     pub fn identity(originals: Vec<[DVec3; 3]>) -> Self {
         let whole = FacePieces {
             itself: true,
@@ -125,7 +123,6 @@ impl Correspondence {
     }
 
     /// The same map with the faces `ids[0]`, `ids[1]`, ... as faces 0, 1, ..., and lengths in other units.
-    #[must_use]
     pub fn renumbered(
         mut self,
         ids: &[u32],
@@ -152,13 +149,11 @@ impl Correspondence {
     }
 
     /// Number of face ids.
-    #[must_use]
     pub fn face_count(&self) -> usize {
         self.faces.len()
     }
 
     /// Number of original triangles.
-    #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.originals.len()
     }
@@ -167,7 +162,6 @@ impl Correspondence {
     ///
     /// # Panics
     /// Where there is no such triangle.
-    #[must_use]
     pub fn original(&self, triangle: u32) -> [DVec3; 3] {
         self.originals[triangle as usize]
     }
@@ -176,7 +170,6 @@ impl Correspondence {
     ///
     /// # Panics
     /// Where there is no such face.
-    #[must_use]
     pub fn piece_count(&self, face: u32) -> usize {
         let pieces = &self.faces[face as usize];
         pieces.heads.len() + usize::from(pieces.itself)
@@ -199,7 +192,6 @@ impl Correspondence {
     ///
     /// # Panics
     /// Where there is no such face.
-    #[must_use]
     pub fn displacement(&self, face: u32) -> f64 {
         self.faces[face as usize].displacement
     }
@@ -207,7 +199,6 @@ impl Correspondence {
     /// Decides whether everything that the faces of a layout stand for may be where the collapse would put it.
     ///
     /// Time: linear in the corners of the pieces of the layout, and that of the allowance for each piece after.
-    #[must_use]
     pub fn allows(
         &self,
         layout: &Layout,
@@ -304,7 +295,6 @@ impl Correspondence {
     }
 
     /// Takes over a collapse that was allowed; false, and nothing is changed, for one that would tangle up.
-    #[must_use]
     pub fn apply(&mut self, layout: &Layout, scratch: &mut PieceScratch) -> bool {
         let mut new: Vec<(u32, FacePieces)> = Vec::with_capacity(layout.before.len());
         let all = self.visit(layout, scratch, &mut |triangle, part, placed| {

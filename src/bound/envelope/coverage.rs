@@ -63,7 +63,6 @@ impl Coverage {
 
     /// Every triangle of the original is a live face and its own witness. A triangle that repeats a vertex is none, and
     /// not asked for. O(n).
-    #[must_use]
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let own = |t: usize| {
             let [a, b, c] = triangles[t];
@@ -86,7 +85,6 @@ impl Coverage {
     ///
     /// # Panics
     /// Where there is no such triangle.
-    #[must_use]
     pub fn witnesses(&self, triangle: u32) -> &[u32] {
         &self.witnesses[triangle as usize]
     }
@@ -95,7 +93,6 @@ impl Coverage {
     ///
     /// # Panics
     /// Where there is no such face.
-    #[must_use]
     pub fn load(&self, faces: &[u32]) -> usize {
         let each = faces.iter().map(|&f| self.stands_for[f as usize].len());
         each.sum()
@@ -189,14 +186,12 @@ impl Trial {
     }
 
     /// Number of triangles of the original that the change concerns.
-    #[must_use]
     pub fn triangles(&self) -> usize {
         self.ids.len()
     }
 
     /// True where every point of the original that the change concerns is proved to be within reach of the faces that
     /// come, `fan`, or of a witness that stays.
-    #[must_use]
     pub fn covers(&mut self, fan: impl Iterator<Item = [DVec3; 3]>, reach: Reach) -> bool {
         self.arm(fan)
             && self.all_within_reach(reach)
@@ -205,7 +200,6 @@ impl Trial {
 
     /// As [`Trial::covers`]; fills `change` with the new witnesses. `ids` are the faces that come, in the order of
     /// `fan`, and `removed` those that [`Coverage::gather`] was given.
-    #[must_use]
     pub fn assign(
         &mut self,
         removed: &[u32],

@@ -47,7 +47,6 @@ pub struct Facet {
 
 impl Facet {
     /// Prepares a triangle; it may have no area.
-    #[must_use]
     pub fn new([a, b, c]: [DVec3; 3]) -> Self {
         let sides = [b - a, c - a];
         let gram = [
@@ -68,14 +67,12 @@ impl Facet {
 
     /// False where a point is farther than `reach` from the box along an axis.
     #[inline]
-    #[must_use]
     pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
         self.bounds.may_reach(p, reach)
     }
 
     /// Squared distance from `p` to a point of the triangle: the nearest one but for rounding.
     #[inline]
-    #[must_use]
     pub fn distance2(&self, p: DVec3) -> f64 {
         let [ab, ac] = self.sides;
         let [bb, bc, cc] = self.gram;

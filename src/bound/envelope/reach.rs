@@ -29,7 +29,6 @@ pub struct Reach {
 impl Reach {
     /// The bound `length` for positions whose coordinates are at most `largest`; `None` where rounding is as large
     /// as the bound, or the bound is no number.
-    #[must_use]
     pub fn new(length: f64, largest: f64) -> Option<Self> {
         let own = length * (1.0 - MARGIN) - (ULPS * f64::EPSILON) * largest;
         if !(own > 0.0 && own < f64::INFINITY) || own < 0.5 * length {

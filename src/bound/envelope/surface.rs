@@ -34,7 +34,6 @@ pub struct OriginalSurface {
 
 impl OriginalSurface {
     /// The surface of triangles; O(n log n).
-    #[must_use]
     pub fn new(triangles: impl Iterator<Item = [DVec3; 3]>) -> Self {
         Self {
             tree: TriangleTree::of(triangles.map(Facet::new).collect()),
@@ -42,14 +41,12 @@ impl OriginalSurface {
     }
 
     /// True where `p` is within reach.
-    #[must_use]
     pub fn reaches(&self, p: DVec3, reach: Reach) -> bool {
         let tree = self.tree.as_ref();
         tree.is_some_and(|tree| tree.nearest_within(p, None, reach.squared).is_some())
     }
 
     /// True where every point of the triangles is proved to be within reach.
-    #[must_use]
     pub fn holds(
         &self,
         triangles: impl Iterator<Item = [DVec3; 3]>,

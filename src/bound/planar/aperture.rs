@@ -43,19 +43,16 @@ impl Aperture {
     }
 
     /// The angle in radians.
-    #[must_use]
     pub fn angle(self) -> f64 {
         self.angle
     }
 
     /// Its sine, in [0, 1).
-    #[must_use]
     pub fn sin(self) -> f64 {
         self.sin
     }
 
     /// Its cosine, in (0, 1].
-    #[must_use]
     pub fn cos(self) -> f64 {
         self.cos
     }

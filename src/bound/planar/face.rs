@@ -65,7 +65,6 @@ pub struct Projection {
 
 impl Projection {
     /// Projections along the unit vector `direction` on the lines across it, for viewers in `cell` who accept `aperture`.
-    #[must_use]
     pub fn new(cell: &ViewerSegment, direction: DVec2, aperture: Aperture) -> Self {
         let local = cell.turn(direction);
         let end = |x: f64| x.is_finite().then(|| DVec2::new(x * local.y, x * local.x));
@@ -148,7 +147,6 @@ impl Projection {
     /// viewpoint, or cross the cell's line: it is split there (appendix B). Where it touches the cell, nothing but the
     /// line through the contact is left of the interval. Bounds of the paper's section 5, exact. O(1).
     #[inline]
-    #[must_use]
     pub fn interval(&self, a: DVec2, b: DVec2) -> Interval {
         let (m, n) = (self.cell.enter(a), self.cell.enter(b));
         let (from, to) = (self.turned(m), self.turned(n));
@@ -174,7 +172,6 @@ impl Projection {
     /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: judged
     /// from the ends of the cell, or for a cell without an end, at a fraction of the cost.
     #[inline]
-    #[must_use]
     pub fn may_reach(&self, p: DVec2, offsets: Interval) -> bool {
         let local = self.cell.enter(p);
         let at = self.turned(local);
@@ -208,7 +205,6 @@ impl Projection {
     }
 
     /// False only where [`Projection::may_reach`] is for every point of a disc.
-    #[must_use]
     pub fn may_reach_any(&self, disc: Disc, offsets: Interval) -> bool {
         let Disc { centre, radius } = disc;
         let local = self.cell.enter(centre);

@@ -28,7 +28,6 @@ impl Interval {
 
     /// The offsets that are in both.
     #[inline]
-    #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
             min: self.min.max(other.min),
@@ -37,13 +36,11 @@ impl Interval {
     }
 
     /// True where no offset is in it.
-    #[must_use]
     pub fn is_empty(self) -> bool {
         self.min > self.max
     }
 
     /// True where `rho` is in it.
-    #[must_use]
     pub fn contains(self, rho: f64) -> bool {
         self.min <= rho && rho <= self.max
     }

@@ -47,7 +47,6 @@ pub(super) fn reach_of(squared: f64, across: f64, along: f64, sin: f64, cos: f64
 
 /// Distance that `point` may move along the unit vector `direction` for one viewpoint; infinite where no distance is
 /// too far, 0 for a point at the viewpoint.
-#[must_use]
 pub fn viewpoint_extent(
     viewpoint: DVec2,
     point: DVec2,
@@ -71,7 +70,6 @@ pub struct Tangent {
 /// equation 7 first; `None` where it touches the line nowhere. The smaller of the lengths is the extent of a point
 /// at height 1 for the whole line.
 #[inline]
-#[must_use]
 pub fn tangents(direction: DVec2, aperture: Aperture) -> [Option<Tangent>; 2] {
     [1.0, -1.0].each(|sign| {
         let (offset, gap) = tangent(direction, sign, aperture.sin(), aperture.cos());
@@ -138,7 +136,6 @@ pub(super) fn extent_in_frame(
 
 /// Distance that `point` may move along the unit vector `direction` so that no viewer in `cell` sees it move by more
 /// than the aperture, with the viewpoint that sets the limit. 0 for a point in the cell.
-#[must_use]
 pub fn segment_extent(
     cell: &ViewerSegment,
     point: DVec2,

@@ -43,7 +43,6 @@ impl ViewerSegment {
 
     /// The viewpoints `(x, 0)` with `x` from the smaller to the larger of the two abscissae, each of which may be
     /// infinite: then the cell is a ray or the whole axis.
-    #[must_use]
     pub fn on_x_axis(a: f64, b: f64) -> Self {
         Self {
             origin: DVec2::ZERO,
@@ -80,31 +79,26 @@ impl ViewerSegment {
     }
 
     /// `point` in the cell's frame: abscissa along the axis, ordinate to its left.
-    #[must_use]
     pub fn enter(&self, point: DVec2) -> DVec2 {
         self.turn(point - self.origin)
     }
 
     /// `direction` in the cell's frame.
-    #[must_use]
     pub fn turn(&self, direction: DVec2) -> DVec2 {
         DVec2::new(direction.dot(self.axis), self.axis.perp_dot(direction))
     }
 
     /// The viewpoint at abscissa `x` of the cell's frame.
-    #[must_use]
     pub fn viewpoint(&self, x: f64) -> DVec2 {
         self.origin + self.axis * x
     }
 
     /// The origin of the cell's frame.
-    #[must_use]
     pub fn origin(&self) -> DVec2 {
         self.origin
     }
 
     /// The abscissae of the two ends, the smaller first; infinite where the cell has no end.
-    #[must_use]
     pub fn ends(&self) -> [f64; 2] {
         [self.first, self.last]
     }

@@ -21,7 +21,6 @@ pub struct WidestAngle {
 
 /// The largest angle between `point` and `replacement` seen from `cell`. Where the segment between them touches the
 /// cell it is pi: viewers beside the contact see up to that.
-#[must_use]
 pub fn segment_error(cell: &ViewerSegment, point: DVec2, replacement: DVec2) -> WidestAngle {
     let (m, s) = (cell.enter(point), cell.enter(replacement));
     let mut worst = WidestAngle {

@@ -25,7 +25,6 @@ pub struct PointError {
 ///
 /// It is the angle of a viewpoint of the cell, and no other viewpoint has a larger one but for rounding: up to some
 /// 1e-9 of it. Positions should have magnitudes near 1. Cost: less than a microsecond for each face and edge.
-#[must_use]
 pub fn error(cell: &ViewCell, point: DVec3, moved: DVec3) -> PointError {
     let mut most = Most {
         point,

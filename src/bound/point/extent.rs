@@ -26,7 +26,6 @@ pub struct Extent {
 ///
 /// It is the extent of a viewpoint of the cell, and no other viewpoint has a smaller one but for rounding: up to some
 /// 1e-9 of it. Positions should have magnitudes near 1. Cost: less than a microsecond for each face and edge.
-#[must_use]
 pub fn extent(cell: &ViewCell, point: DVec3, direction: DVec3, aperture: Aperture) -> Extent {
     let unbounded = Extent {
         length: f64::INFINITY,

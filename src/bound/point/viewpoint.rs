@@ -13,7 +13,6 @@ use crate::num::math::{atan2, length};
 
 /// The angle between two points as seen from `viewpoint`, in [0, pi] radians; pi where the viewpoint is one of two
 /// different points, because next to it there is a viewpoint that sees them that far apart; 0 for equal points.
-#[must_use]
 pub fn angle_from(viewpoint: DVec3, point: DVec3, moved: DVec3) -> f64 {
     let (a, b, shift) = (point - viewpoint, moved - viewpoint, moved - point);
     if shift == DVec3::ZERO {
@@ -28,7 +27,6 @@ pub fn angle_from(viewpoint: DVec3, point: DVec3, moved: DVec3) -> f64 {
 
 /// Distance that `point` may move along the unit vector `direction` before `viewpoint` sees it move by more than the
 /// aperture; infinite where it never does, 0 where the viewpoint is the point.
-#[must_use]
 pub fn extent_from(viewpoint: DVec3, point: DVec3, direction: DVec3, aperture: Aperture) -> f64 {
     let a = point - viewpoint;
     let (along, across) = (a.dot(direction), length(a.cross(direction)));

@@ -15,7 +15,6 @@ pub struct HalfSpace {
 
 impl HalfSpace {
     /// The half-space behind a plane through `point`; `None` where the normal has no direction.
-    #[must_use]
     pub fn behind(point: DVec3, normal: DVec3) -> Option<Self> {
         let normal = math::unit(normal)?;
         Some(Self {
@@ -26,13 +25,11 @@ impl HalfSpace {
 
     /// Distance of `p` from the half-space; negative inside.
     #[inline]
-    #[must_use]
     pub fn excess(&self, p: DVec3) -> f64 {
         self.normal.dot(p) - self.offset
     }
 
     /// The other side of the plane.
-    #[must_use]
     pub fn complement(&self) -> Self {
         Self {
             normal: -self.normal,

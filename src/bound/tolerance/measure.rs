@@ -64,7 +64,6 @@ impl Polygon {
 
 impl Prism {
     /// The largest height, up or down, of the part of a triangle that is in the column; 0 where there is none.
-    #[must_use]
     pub fn largest_height(&self, triangle: [DVec3; 3]) -> f64 {
         self.height_of(Polygon::triangle(triangle))
     }
@@ -82,13 +81,11 @@ impl Neighborhood {
     /// the old ones.
     ///
     /// O(faces * link edges), more where there are gaps.
-    #[must_use]
     pub fn deviation(&self, v: DVec3) -> f64 {
         self.measure(v, f64::INFINITY)
     }
 
     /// True where [`Neighborhood::deviation`] is at most `bound`; faster where it is not.
-    #[must_use]
     pub fn keeps(&self, v: DVec3, bound: f64) -> bool {
         self.measure(v, bound) <= bound
     }

@@ -18,7 +18,6 @@ pub struct OldFace {
 
 impl OldFace {
     /// The edge opposite to the end, directed as in the triangle; `None` for an internal triangle.
-    #[must_use]
     pub fn link(&self) -> Option<[DVec3; 2]> {
         match self.ends.iter().filter(|&&e| e).count() {
             1 => {
@@ -41,7 +40,6 @@ pub struct Neighborhood {
 
 impl Neighborhood {
     /// The triangles at the ends of an edge, whose midpoint is `origin`; `None` where one of them is a needle.
-    #[must_use]
     pub fn new(origin: DVec3, faces: impl Iterator<Item = OldFace>) -> Option<Self> {
         let mut own = Self {
             origin,
@@ -58,25 +56,21 @@ impl Neighborhood {
     }
 
     /// The point that coordinates are relative to.
-    #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
     /// The old triangles, relative.
-    #[must_use]
     pub fn faces(&self) -> &[OldFace] {
         &self.faces
     }
 
     /// Their prisms, relative.
-    #[must_use]
     pub fn prisms(&self) -> &[Prism] {
         &self.prisms
     }
 
     /// The edges of the link, relative; a new triangle stands on every one.
-    #[must_use]
     pub fn links(&self) -> &[[DVec3; 2]] {
         &self.links
     }

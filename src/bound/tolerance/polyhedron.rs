@@ -22,7 +22,6 @@ pub struct Polyhedron {
 
 impl Polyhedron {
     /// The box between two corners, each coordinate of the second above that of the first.
-    #[must_use]
     pub fn cuboid(low: DVec3, high: DVec3) -> Self {
         let at = |i: usize| {
             let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
@@ -63,13 +62,11 @@ impl Polyhedron {
     }
 
     /// True where a point is inside, or outside by no more than `tolerance`.
-    #[must_use]
     pub fn contains(&self, p: DVec3, tolerance: f64) -> bool {
         self.bounds().all(|b| b.excess(p) <= tolerance)
     }
 
     /// The part of it in a half-space; `None` where that is no more than `tolerance` thick there.
-    #[must_use]
     pub fn cut(&self, by: HalfSpace, tolerance: f64) -> Option<Self> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in self.corners() {
@@ -148,14 +145,12 @@ impl Polyhedron {
     }
 
     /// True where all of it is outside one of the half-spaces.
-    #[must_use]
     pub fn misses(&self, all: &[HalfSpace], tolerance: f64) -> bool {
         all.iter()
             .any(|b| self.corners().all(|p| b.excess(p) >= -tolerance))
     }
 
     /// Its volume.
-    #[must_use]
     pub fn volume(&self) -> f64 {
         let Some(apex) = self.corners().next() else {
             return 0.0;
@@ -173,7 +168,6 @@ impl Polyhedron {
     }
 
     /// The point of it at which a convex function is least, and the value there.
-    #[must_use]
     pub fn minimum(&self, of: &Quadratic, tolerance: f64) -> Option<(DVec3, f64)> {
         if let Some(v) = of.minimum()
             && self.contains(v, tolerance)

@@ -27,7 +27,6 @@ pub struct Prism {
 
 impl Prism {
     /// The column over a triangle; `None` for a needle.
-    #[must_use]
     pub fn new(points: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = points;
         let cross = area_normal(points);
@@ -52,19 +51,16 @@ impl Prism {
 
     /// Height of a point over the triangle's plane.
     #[inline]
-    #[must_use]
     pub fn height(&self, p: DVec3) -> f64 {
         (p - self.points[0]).dot(self.normal)
     }
 
     /// The triangle moved along its normal.
-    #[must_use]
     pub fn cap(&self, height: f64) -> [DVec3; 3] {
         self.points.each(|p| p + self.normal * height)
     }
 
     /// The prism of half-height `bound`: walls, then the upper and the lower cap.
-    #[must_use]
     pub fn sides(&self, bound: f64) -> [HalfSpace; 5] {
         let plane = self.normal.dot(self.points[0]);
         let cap = |normal: DVec3, offset: f64| HalfSpace {

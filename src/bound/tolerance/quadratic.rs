@@ -18,13 +18,11 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// Its value.
-    #[must_use]
     pub fn at(&self, v: DVec3) -> f64 {
         0.5 * v.dot(self.matrix.times(v)) + self.linear.dot(v)
     }
 
     /// The point at which it is least; `None` where `H` is singular but for rounding.
-    #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
         let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].each(|axis| self.matrix.times(axis));
         let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
@@ -39,7 +37,6 @@ impl Quadratic {
     }
 
     /// The point of the plane through `point` across `normal` at which it is least; `None` where that is not one.
-    #[must_use]
     pub fn minimum_on_plane(&self, point: DVec3, normal: DVec3) -> Option<DVec3> {
         let axis = if normal.x.abs() <= normal.y.abs() && normal.x.abs() <= normal.z.abs() {
             DVec3::X
@@ -65,7 +62,6 @@ impl Quadratic {
     }
 
     /// The point between two at which it is least.
-    #[must_use]
     pub fn minimum_between(&self, from: DVec3, to: DVec3) -> DVec3 {
         let d = to - from;
         let curve = d.dot(self.matrix.times(d));

@@ -15,7 +15,6 @@ use crate::num::Each;
 /// The shadows of a cap from the segment `source` (its ends may coincide): none, one, or two where the source is on both
 /// sides of the cap's plane. Each is the intersection of the half-spaces. `tolerance`: length below which points count
 /// as on a plane.
-#[must_use]
 pub fn shadows(
     cap: [DVec3; 3],
     normal: DVec3,

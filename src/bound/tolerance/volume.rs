@@ -37,7 +37,6 @@ impl Volume {
     /// plane.
     ///
     /// O(polyhedra * faces * link edges).
-    #[must_use]
     pub fn new(around: &Neighborhood, bound: f64, source: Source, tolerance: f64) -> Self {
         let mut own = Self {
             polyhedra: base(around, bound, tolerance),
@@ -71,20 +70,17 @@ impl Volume {
     }
 
     /// The polyhedra.
-    #[must_use]
     pub fn polyhedra(&self) -> &[Polyhedron] {
         &self.polyhedra
     }
 
     /// True where a position, relative to the neighbourhood's origin, lies in a polyhedron.
-    #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
         self.polyhedra.iter().any(|c| c.contains(p, self.tolerance))
     }
 
     /// The point of the volume at which a convex function is least, relative to the neighbourhood's origin; that of the
     /// first polyhedron on a tie.
-    #[must_use]
     pub fn minimum(&self, of: &Quadratic) -> Option<DVec3> {
         let mut best: Option<(DVec3, f64)> = None;
         for polyhedron in &self.polyhedra {

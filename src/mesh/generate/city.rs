@@ -23,13 +23,11 @@ const SETBACKS: [f64; 3] = [0.0, 0.01, 0.03];
 /// street, so that facades are flush with the street lines on all four sides but for setbacks of 0, 0.01 or 0.03;
 /// heights are from 1 to 8. Blocks follow at a pitch of 2.4, and every fifth street is 4 wide. The first row begins at
 /// y = 0 and the first column at x = 0: a viewer at y <= -6 is at least 6 away.
-#[must_use]
 pub fn city() -> Mesh {
     buildings(COLUMNS, ROWS)
 }
 
 /// A [`city`] of `rows` streets with `columns` buildings each: 10 triangles per building.
-#[must_use]
 pub fn buildings(columns: u32, rows: u32) -> Mesh {
     let mut random = Pcg32::new(7, 1);
     let columns = blocks(columns, &mut random);
@@ -89,13 +87,11 @@ fn building(low: [f64; 2], high: [f64; 2], height: f64) -> Surface {
 /// A forest of 10,000 trees, each a rectangle of 2 triangles that faces the middle, in a disc of radius 500 around the
 /// origin: 20,000 triangles. Trees are 4 to 8 high and half as wide. Its viewers are on a segment of length 20 around
 /// the origin, along the x-axis.
-#[must_use]
 pub fn forest() -> Mesh {
     trees(10_000, 500.0)
 }
 
 /// The first `count` trees of the [`forest`], in a disc of this radius.
-#[must_use]
 pub fn trees(count: u32, radius: f64) -> Mesh {
     let mut random = Pcg32::new(7, 2);
     let mut surface = Surface::default();

@@ -10,7 +10,6 @@ use crate::{
 
 /// The cube [-1, 1]^3: 8 vertices, 12 triangles, 24 wedges with a texture coordinate and a normal each, and a material
 /// for every side (`x-`, `x+`, `y-`, ...). Every side shows the whole texture, v up.
-#[must_use]
 pub fn cube() -> Mesh {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let mut parts = MeshParts {

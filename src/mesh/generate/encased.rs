@@ -9,7 +9,6 @@ const DETAIL_LIMIT: u32 = 5;
 /// Two interlocking tori in a closed casing with dents, none touching another. The casing comes first.
 ///
 /// `detail` 1, 2, 3 (to 5): 320 + 512, 1,280 + 2,048, 5,120 + 8,192 triangles.
-#[must_use]
 pub fn encased(detail: u32) -> Mesh {
     let detail = detail.clamp(1, DETAIL_LIMIT);
     let mut surface = Surface::default();

@@ -21,7 +21,6 @@ const RINGS: (f64, f64) = (0.16, 0.40);
 ///
 /// All parts are closed, outward, and apart from each other. The casing comes first. The interior has more than four
 /// times its area. `detail` 1, 2, 3 (to 5): 12,504, 50,016, 200,064 triangles.
-#[must_use]
 pub fn engine(detail: u32) -> Mesh {
     let detail = detail.clamp(1, DETAIL_LIMIT);
     let mut surface = Surface::default();

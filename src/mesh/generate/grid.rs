@@ -36,7 +36,6 @@ impl Height {
 }
 
 /// `n` by `m` cells (1 to 2,048 each) of two triangles over the square [-1, 1]^2, facing +z, with a boundary.
-#[must_use]
 pub fn grid(n: u32, m: u32, height: Height) -> Mesh {
     grid_surface(n, m, height).into_mesh()
 }

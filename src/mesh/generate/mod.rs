@@ -54,7 +54,6 @@ pub const NAMES: &[&str] = &[
 ];
 
 /// The mesh of a name in [`NAMES`], of a size that suits a demonstration; `None` for other names.
-#[must_use]
 pub fn by_name(name: &str) -> Option<Mesh> {
     Some(match name {
         "tetrahedron" => tetrahedron(),

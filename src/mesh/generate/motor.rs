@@ -26,7 +26,6 @@ pub(super) const CYLINDERS: [f64; 4] = [-0.66, -0.22, 0.22, 0.66];
 ///
 /// Every part is closed and faces outward, except three cavities, which face inward. `detail` 1, 2, 3 (to 8) multiplies
 /// the segments in every direction: 20,602, 56,808, 115,360 triangles.
-#[must_use]
 pub fn motor(detail: u32) -> Mesh {
     let n = Detail(detail.clamp(1, DETAIL_LIMIT));
     let mut surface = Surface::default();

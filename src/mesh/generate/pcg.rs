@@ -11,7 +11,6 @@ impl Pcg32 {
     const MULTIPLIER: u64 = 6_364_136_223_846_793_005;
 
     /// The sequence of `seed` in stream `stream`.
-    #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut random = Self {
             state: 0,

@@ -13,7 +13,6 @@ use crate::{mesh::Mesh, num::Each};
 /// Fewer than 500 triangles within 1.5 of the origin: a sphere half hidden behind an open sheet and pierced by a
 /// tetrahedron, a ring, a fan of slivers, faces that occur twice (also reversed, also with vertices of their own),
 /// degenerate triangles, and a cloud of random ones.
-#[must_use]
 pub fn probe() -> Mesh {
     let mut scene = Surface::default();
     let sphere = spherical_surface(1);

@@ -11,21 +11,18 @@ const SUBDIVISION_LIMIT: u32 = 9;
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
 /// The regular tetrahedron on four corners of the cube [-1, 1]^3.
-#[must_use]
 pub fn tetrahedron() -> Mesh {
     tetrahedral_surface().into_mesh()
 }
 
 /// The icosahedron with every triangle split in four `subdivisions` times (0 to 9) and all vertices at distance 1 from
 /// the origin: 20 * 4^subdivisions triangles.
-#[must_use]
 pub fn icosphere(subdivisions: u32) -> Mesh {
     spherical_surface(subdivisions).into_mesh()
 }
 
 /// `count` icospheres (1 to 64) around one centre, the largest with radius 1 first, the radii an arithmetic sequence
 /// down to `1 / count`: each hides the next.
-#[must_use]
 pub fn shells(count: u32, subdivisions: u32) -> Mesh {
     let count = count.clamp(1, 64);
     let sphere = spherical_surface(subdivisions.min(SUBDIVISION_LIMIT - 3));

@@ -21,13 +21,11 @@ const SPINS: f64 = 2.0;
 ///
 /// # Panics
 /// Where a radius is not finite in `f32`.
-#[must_use]
 pub fn torus(major: f64, minor: f64, around: u32, across: u32) -> Mesh {
     round_surface(major, minor, around, across).into_mesh()
 }
 
 /// Two tori like links of a chain, neither touching the other.
-#[must_use]
 pub fn interlocking_tori(around: u32, across: u32) -> Mesh {
     let link = round_surface(1.0, 0.3, around, across);
     let mut surface = Surface::default();
@@ -41,7 +39,6 @@ pub fn interlocking_tori(around: u32, across: u32) -> Mesh {
 ///
 /// The paper gives no numbers; here the circle has radius 1, the ellipse half-axes 0.45 and 0.2, and it makes two full
 /// turns. `around` and `across` as in [`torus`]; wedges outnumber vertices by `around + across + 1`.
-#[must_use]
 pub fn textured_torus(around: u32, across: u32) -> Mesh {
     let [n, m] = [around, across].each(|s| s.clamp(3, SEGMENT_LIMIT));
     let surface = swept(n, m, 1.0, |theta, phi| {

@@ -39,7 +39,6 @@ impl BillboardOptions {
     pub const TEXELS: u32 = 1024;
 
     /// With the z-axis up, horizontal faces bounded in height, and the defaults above.
-    #[must_use]
     pub fn within(limit: Limit) -> Self {
         Self {
             limit,

@@ -28,7 +28,6 @@ pub enum Up {
 
 impl Up {
     /// Seen from above.
-    #[must_use]
     pub fn plan(self, p: DVec3) -> DVec2 {
         match self {
             Self::X => DVec2::new(p.y, p.z),
@@ -38,7 +37,6 @@ impl Up {
     }
 
     /// Height.
-    #[must_use]
     pub fn height(self, p: DVec3) -> f64 {
         match self {
             Self::X => p.x,
@@ -48,7 +46,6 @@ impl Up {
     }
 
     /// The point above `plan` at some height.
-    #[must_use]
     pub fn place(self, plan: DVec2, height: f64) -> DVec3 {
         match self {
             Self::X => DVec3::new(height, plan.x, plan.y),

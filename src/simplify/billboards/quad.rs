@@ -35,7 +35,6 @@ pub type Texture = Grid<[u8; 4]>;
 
 impl Quad {
     /// The four corners: lower left, lower right, upper right, upper left.
-    #[must_use]
     pub fn corners(&self) -> [DVec3; 4] {
         let [right, up, _] = self.axes;
         let (right, up) = (right * self.size[0], up * self.size[1]);
@@ -44,7 +43,6 @@ impl Quad {
     }
 
     /// The place on the quad at which a point of the scene is shown.
-    #[must_use]
     pub fn project(&self, p: DVec3) -> DVec3 {
         project(p, self.corner, self.axes[2], self.along)
     }
@@ -52,7 +50,6 @@ impl Quad {
     /// Draws its texture, seen along the direction of projection with a light at the viewer, as every picture of this
     /// crate; nothing is opaque that no triangle covers, but the colour goes one texel beyond, for filters. O(texels +
     /// drawn).
-    #[must_use]
     pub fn texture(&self, mesh: &Mesh) -> Texture {
         let picture = self.picture(mesh);
         let [width, height] = self.texels;

@@ -129,13 +129,11 @@ impl ToleranceMethod {
     }
 
     /// The bound that holds for the mesh at any time.
-    #[must_use]
     pub fn guarantee(&self) -> Guarantee {
         self.guarantee
     }
 
     /// The local bounds that a run goes through, in frame units; infinite is none. The last one is.
-    #[must_use]
     pub fn local_bounds(&self) -> Vec<f64> {
         let mut bounds = Vec::new();
         if self.options.growing {

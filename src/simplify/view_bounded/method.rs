@@ -77,7 +77,6 @@ impl ViewBounded {
     }
 
     /// The map so far: frame units from the method's own origin, faces by their live ids.
-    #[must_use]
     pub fn correspondence(&self) -> &Correspondence {
         &self.map
     }
