@@ -14,12 +14,10 @@ use super::{
     LiveMesh, Patch, PatchFace, Refusal, Rules,
     edge_star::normal,
     legality::{self, STAR_LIMIT},
-    pinch, wedge,
+    pinch,
+    wedge::{self, Blend},
 };
-use crate::{
-    mesh::ChannelKind,
-    num::{Each, math},
-};
+use crate::num::{Each, math};
 
 /// Directions in which a vertex may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -195,22 +193,17 @@ impl Star {
                     continue;
                 }
                 let into = &mut self.values[channel.offset..][..channel.kind.width()];
-                for (i, x) in into.iter_mut().enumerate() {
-                    let [a, b, c] = corners.each(|v| v[i]);
-                    let sum = (weights[0] * a + weights[1] * b) + weights[2] * c;
-                    *x = sum.clamp(a.min(b).min(c), a.max(b).max(c));
-                }
-                if channel.kind == ChannelKind::Normal {
-                    let n = math::unit(DVec3::new(into[0], into[1], into[2]));
-                    // Opposite normals cancel: keep the vertex's own rather than none.
-                    match n {
-                        Some(n) => into.copy_from_slice(&n.to_array()),
-                        None => into.copy_from_slice(rows.value(channel, own)),
-                    }
-                }
-                for x in into {
-                    *x = live.precision().round(*x);
-                }
+                let blend = Blend {
+                    values: corners,
+                    weights,
+                };
+                // Opposite normals cancel: keep the vertex's own rather than none.
+                blend.write(
+                    channel.kind,
+                    live.precision(),
+                    rows.value(channel, own),
+                    into,
+                );
             }
             if wedge::same_bits(&self.values, rows.row(own)) {
                 continue;

@@ -66,5 +66,9 @@ pub(super) fn name(kind: ChannelKind) -> String {
         ChannelKind::TexCoord(set) => format!("texture coordinates (set {set})"),
         ChannelKind::Color => "colours".into(),
         ChannelKind::ColorAlpha => "colours with opacity".into(),
+        ChannelKind::Tangent => "tangents".into(),
+        ChannelKind::Skin(set) => format!("joints and weights (set {set})"),
+        ChannelKind::Delta(n) => format!("morph target {}", n / 3),
+        ChannelKind::Custom { number, .. } => format!("custom attribute {number}"),
     }
 }

@@ -20,6 +20,19 @@ pub enum ChannelKind {
     Color,
     /// Red, green, blue, opacity in [0, 1]: 4 values.
     ColorAlpha,
+    /// A unit tangent, and the sign (1 or -1) of the bitangent: 4 values.
+    Tangent,
+    /// Four joints by number, and their weights, which sum to 1: 8 values. Of set 0, 1, ...
+    Skin(u8),
+    /// The displacement of a morph target: 3 values. 3 x target, + 0 of the position, 1 of the normal, 2 of the tangent.
+    Delta(u16),
+    /// An attribute that only its file knows, such as an id: it is taken from the nearest corner, never averaged.
+    Custom {
+        /// Number among the attributes of the file, which has their names ([`Asset::customs`](super::Asset::customs)).
+        number: u8,
+        /// Values per wedge: 1 to 4.
+        width: u8,
+    },
 }
 
 impl ChannelKind {
@@ -28,8 +41,10 @@ impl ChannelKind {
     pub const fn width(self) -> usize {
         match self {
             Self::TexCoord(_) => 2,
-            Self::Normal | Self::Color => 3,
-            Self::ColorAlpha => 4,
+            Self::Normal | Self::Color | Self::Delta(_) => 3,
+            Self::ColorAlpha | Self::Tangent => 4,
+            Self::Skin(_) => 8,
+            Self::Custom { width, .. } => width as usize,
         }
     }
 }

@@ -243,5 +243,6 @@ fn materials(materials: &Materials, triangles: &[Placed]) -> Materials {
         of_triangle,
         names: names.into_iter().map(String::from).collect(),
         libraries: materials.libraries.clone(),
+        asset: materials.asset.clone(),
     }
 }

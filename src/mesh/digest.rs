@@ -51,6 +51,10 @@ pub fn content_digest(mesh: &Mesh) -> [u8; 32] {
             ChannelKind::TexCoord(set) => [1, set],
             ChannelKind::Color => [2, 0],
             ChannelKind::ColorAlpha => [3, 0],
+            ChannelKind::Tangent => [4, 0],
+            ChannelKind::Skin(set) => [5, set],
+            ChannelKind::Custom { number, width } => [5 + width, number],
+            ChannelKind::Delta(n) => [16 + (n >> 8) as u8, n as u8],
         });
     }
     sink.length(attributes.values().len());

@@ -1,8 +1,10 @@
 //! The indexed triangle mesh.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Attributes, canonical, weld};
+use super::{Asset, Attributes, canonical, weld};
 use crate::{
     Error, Result,
     num::{Each, Frame, Precision},
@@ -13,7 +15,7 @@ use crate::{
 const BOUNDS_CHUNK: usize = 1 << 15;
 
 /// Materials: a name per triangle, and the files that define them. Empty where the file has none.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Materials {
     /// Names, in the order in which the file first uses them.
     pub names: Vec<String>,
@@ -21,6 +23,8 @@ pub struct Materials {
     pub of_triangle: Vec<u32>,
     /// Material libraries (`mtllib`) that the file names.
     pub libraries: Vec<String>,
+    /// The document that defines them, where the file is one: a writer of its format gives back all that is in it.
+    pub asset: Option<Arc<Asset>>,
 }
 
 impl Materials {

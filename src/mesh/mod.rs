@@ -4,6 +4,7 @@
 //! file units; the stages that care about magnitude work in a [`Frame`](crate::num::Frame).
 
 mod adjacency;
+mod asset;
 mod attributes;
 mod canonical;
 mod connectivity;
@@ -17,6 +18,7 @@ mod part_near_boxes;
 mod weld;
 
 pub use adjacency::{Edge, Edges, VertexTriangles};
+pub use asset::{Asset, AssetPart};
 pub use attributes::{Attributes, Channel, ChannelKind};
 pub use canonical::{Canonical, canonical};
 pub use digest::{content_digest, content_sha256};

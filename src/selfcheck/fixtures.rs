@@ -54,7 +54,7 @@ pub(super) fn two_materials() -> Mesh {
         materials: Materials {
             names: vec!["left".into(), "right".into()],
             of_triangle: mesh.triangles().iter().map(half).collect(),
-            libraries: Vec::new(),
+            ..Materials::default()
         },
         precision: mesh.precision(),
         ..MeshParts::default()

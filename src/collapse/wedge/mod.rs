@@ -1,7 +1,9 @@
 //! Wedges: the values of corners, and the seams between faces that differ in them.
 
+mod blend;
 mod transfer;
 
+pub(super) use self::blend::Blend;
 pub(super) use self::transfer::{WedgeScratch, transfer};
 use super::{LiveMesh, StarFace};
 use crate::{
@@ -84,9 +86,13 @@ impl WedgeRows {
     }
 }
 
-/// Normals differ at almost every edge of a flat-shaded export; that alone is no feature.
+/// Texture coordinates and colours are seen to jump. Normals differ at almost every edge of a flat-shaded export; that
+/// alone is no feature. The rest is not seen.
 pub(super) fn makes_features(kind: ChannelKind) -> bool {
-    kind != ChannelKind::Normal
+    matches!(
+        kind,
+        ChannelKind::TexCoord(_) | ChannelKind::Color | ChannelKind::ColorAlpha
+    )
 }
 
 pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {

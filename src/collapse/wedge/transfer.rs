@@ -10,11 +10,11 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{WedgeRows, same_bits};
+use super::{Blend, WedgeRows, same_bits};
 use crate::{
     collapse::{EdgeStar, LiveMesh, Patch, pinch::Forest},
     mesh::{Channel, ChannelKind},
-    num::{Each, Precision, math},
+    num::{Each, Precision},
 };
 
 /// A corner of the star at one end of its edge.
@@ -232,18 +232,12 @@ fn interpolate(
     } else if t == 1.0 {
         into.copy_from_slice(b);
     } else {
-        for ((x, &a), &b) in into.iter_mut().zip(a).zip(b) {
-            *x = ((1.0 - t) * a + t * b).clamp(a.min(b), a.max(b));
-        }
-        if kind == ChannelKind::Normal {
-            let n = DVec3::new(into[0], into[1], into[2]);
-            // Opposite normals cancel: keep the first end's rather than none.
-            let n = math::unit(n).unwrap_or(DVec3::new(a[0], a[1], a[2]));
-            into.copy_from_slice(&[n.x, n.y, n.z]);
-        }
-        for x in into.iter_mut() {
-            *x = precision.round(*x);
-        }
+        let blend = Blend {
+            values: [a, b],
+            weights: [1.0 - t, t],
+        };
+        // Opposite normals cancel: keep the first end's rather than none.
+        blend.write(kind, precision, a, into);
     }
 }
 

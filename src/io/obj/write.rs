@@ -75,9 +75,9 @@ fn notes(mesh: &Mesh, per_vertex: &PerVertex) -> Vec<String> {
         );
         match channel.kind {
             ChannelKind::Normal | ChannelKind::TexCoord(0) => {}
-            ChannelKind::TexCoord(_) => notes.push(format!("OBJ cannot keep {name}")),
             ChannelKind::ColorAlpha => notes.push("OBJ cannot keep the opacity of colours".into()),
             ChannelKind::Color => {}
+            _ => notes.push(format!("OBJ cannot keep {name}")),
         }
         if matches!(channel.kind, ChannelKind::Color | ChannelKind::ColorAlpha) && differing > 0 {
             notes.push(format!(

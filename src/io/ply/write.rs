@@ -103,8 +103,8 @@ impl Plan {
             .copied()
             .filter(|&c| match c.kind {
                 ChannelKind::TexCoord(0) => corner_uv.is_none(),
-                ChannelKind::TexCoord(_) => false,
-                _ => true,
+                ChannelKind::Normal | ChannelKind::Color | ChannelKind::ColorAlpha => true,
+                _ => false,
             })
             .collect();
         let byte_colours = vertex_channels
@@ -154,6 +154,7 @@ impl Plan {
                 ChannelKind::TexCoord(_) => property(real, &["s", "t"]),
                 ChannelKind::Color => property(colour, &["red", "green", "blue"]),
                 ChannelKind::ColorAlpha => property(colour, &["red", "green", "blue", "alpha"]),
+                _ => {}
             }
         }
         let _ = write!(
@@ -175,16 +176,18 @@ impl Plan {
         for channel in mesh.attributes().channels() {
             let kind = channel.kind;
             let differing = self.per_vertex.differing(kind);
-            if !matches!(kind, ChannelKind::TexCoord(0)) {
-                if matches!(kind, ChannelKind::TexCoord(_)) {
-                    notes.push(format!("PLY cannot keep {}", per_vertex::name(kind)));
-                } else if differing > 0 {
-                    notes.push(format!(
-                        "PLY keeps one value per vertex: {} differ between corners at {differing} vertices, the first \
-                         is kept there",
-                        per_vertex::name(kind)
-                    ));
+            let name = per_vertex::name(kind);
+            match kind {
+                ChannelKind::TexCoord(0) => {}
+                ChannelKind::Normal | ChannelKind::Color | ChannelKind::ColorAlpha => {
+                    if differing > 0 {
+                        notes.push(format!(
+                            "PLY keeps one value per vertex: {name} differ between corners at {differing} vertices, \
+                             the first is kept there"
+                        ));
+                    }
                 }
+                _ => notes.push(format!("PLY cannot keep {name}")),
             }
         }
         notes

@@ -76,6 +76,7 @@ fn tangle(seed: u64) -> Mesh {
         names: vec!["a".into(), "b".into()],
         of_triangle: of_triangle.collect(),
         libraries: Vec::new(),
+        asset: None,
     };
     Mesh::new(MeshParts {
         positions,

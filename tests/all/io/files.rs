@@ -294,6 +294,7 @@ fn triangles_without_a_material_after_others_do_not_inherit_one() {
         names: vec!["none".into()],
         of_triangle: vec![0, Materials::NONE],
         libraries: Vec::new(),
+        asset: None,
     };
     let mesh = Mesh::new(parts).expect("valid");
     let (bytes, notes) = io::encode(&mesh, Encoding::Obj).expect("writes");
@@ -384,6 +385,7 @@ fn meshes() -> impl Strategy<Value = Mesh> {
                                 })
                                 .collect(),
                             libraries: vec!["lib one.mtl".into()],
+                            asset: None,
                         },
                         triangles,
                         precision,

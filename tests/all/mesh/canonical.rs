@@ -181,7 +181,7 @@ impl Soup {
             materials: Materials {
                 names,
                 of_triangle,
-                libraries: Vec::new(),
+                ..Materials::default()
             },
             precision: Precision::F32,
         })

@@ -166,6 +166,7 @@ pub(crate) fn cube(n: usize, charts: bool, materials: bool) -> Mesh {
             names: (0..6).map(|i| format!("side{i}")).collect(),
             of_triangle,
             libraries: Vec::new(),
+            asset: None,
         };
     }
     Mesh::new(parts).expect("valid")
