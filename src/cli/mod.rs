@@ -116,7 +116,6 @@ fn command() -> clap::Command {
 }
 
 /// Runs the command line of this process.
-#[must_use]
 pub fn main() -> ExitCode {
     let parsed = command()
         .try_get_matches()

@@ -9,7 +9,6 @@ pub struct ByteCursor<'a> {
 
 impl<'a> ByteCursor<'a> {
     /// A cursor at the byte `at`, or at the end where `at` lies beyond.
-    #[must_use]
     pub fn new(bytes: &'a [u8], at: usize) -> Self {
         Self {
             bytes,
@@ -18,13 +17,11 @@ impl<'a> ByteCursor<'a> {
     }
 
     /// Offset of the next byte from the start of the file, for messages.
-    #[must_use]
     pub fn offset(&self) -> usize {
         self.at
     }
 
     /// Bytes that are left.
-    #[must_use]
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }

@@ -33,7 +33,6 @@ pub(super) struct Tick {
 
 impl Axis {
     /// An axis from 0 to a little above the highest value; to 1 where that is not above 0.
-    #[must_use]
     pub fn from_zero(label: &str, highest: f64) -> Self {
         let top = if highest > 0.0 { 1.08 * highest } else { 1.0 };
         Self {

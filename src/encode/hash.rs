@@ -40,7 +40,6 @@ impl Raw for [u8; 3] {
 }
 
 /// SHA-256 of a plane as 64 lower-case hexadecimal digits.
-#[must_use]
 pub fn plane_sha256<T: Raw>(plane: &Grid<T>) -> String {
     let mut hash = Sha256::new();
     for number in [plane.width(), plane.height(), T::BYTES] {

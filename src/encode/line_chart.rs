@@ -79,7 +79,6 @@ const LINE: f64 = 20.0;
 const CHARACTER: f64 = 7.2;
 impl LineChart {
     /// The chart as the text of an SVG file.
-    #[must_use]
     pub fn to_svg(&self) -> String {
         let [width, height] = self.size;
         let right = match self.right {

@@ -43,7 +43,6 @@ pub enum Picture {
 
 impl Picture {
     /// The picture in grey: luma for colours (equal levels give that level).
-    #[must_use]
     pub fn into_luma(self) -> Grid<u8> {
         match self {
             Self::Grey(plane) => plane,
@@ -52,7 +51,6 @@ impl Picture {
     }
 
     /// The picture in colours.
-    #[must_use]
     pub fn into_rgb(self) -> Grid<[u8; 3]> {
         match self {
             Self::Grey(plane) => plane.map(|v| [v; 3]),

@@ -30,7 +30,6 @@ pub struct SealedFormat {
 
 impl SealedFormat {
     /// The first bytes of a file: magic and version.
-    #[must_use]
     pub fn begin(&self, capacity: usize) -> Vec<u8> {
         let mut out = Vec::with_capacity(capacity);
         out.extend(self.magic);
@@ -81,7 +80,6 @@ impl SealedFormat {
 }
 
 /// Appends the checksum that [`SealedFormat::open`] demands.
-#[must_use]
 pub fn seal(mut out: Vec<u8>) -> Vec<u8> {
     let checksum = Sha256::digest(&out);
     out.extend(checksum);
@@ -103,19 +101,16 @@ pub struct SealedReader<'a> {
 
 impl<'a> SealedReader<'a> {
     /// The file, for messages.
-    #[must_use]
     pub fn path(&self) -> &'a Path {
         self.path
     }
 
     /// Bytes of content that are left.
-    #[must_use]
     pub fn remaining(&self) -> usize {
         self.cursor.rest().len()
     }
 
     /// An error that says `message` and the place.
-    #[must_use]
     pub fn bad(&self, message: &str) -> Error {
         let at = self.cursor.offset();
         Error::input(self.path, format!("{message} (near byte {at})"))

@@ -12,7 +12,6 @@ pub struct VertexTriangles {
 
 impl VertexTriangles {
     /// Collects them; O(vertices + triangles).
-    #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         let mut starts = vec![0_u32; mesh.positions().len() + 1];
         for &corners in mesh.triangles() {
@@ -38,7 +37,6 @@ impl VertexTriangles {
     ///
     /// # Panics
     /// Where there is no such vertex.
-    #[must_use]
     pub fn at(&self, vertex: u32) -> &[u32] {
         &self.triangles
             [self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
@@ -69,7 +67,6 @@ pub struct Edges {
 
 impl Edges {
     /// Collects them; O(n log n). Edges that join a vertex to itself (in degenerate triangles) are left out.
-    #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         let mut sides: Vec<(Edge, u32)> = Vec::with_capacity(3 * mesh.triangles().len());
         for (t, &[a, b, c]) in mesh.triangles().iter().enumerate() {
@@ -100,13 +97,11 @@ impl Edges {
     }
 
     /// Number of edges.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.edges.len()
     }
 
     /// True where there is no edge.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.edges.is_empty()
     }
@@ -122,7 +117,6 @@ impl Edges {
     }
 
     /// The triangles at an edge; empty where there is no such edge.
-    #[must_use]
     pub fn triangles(&self, edge: Edge) -> &[u32] {
         match self.edges.binary_search(&edge) {
             Ok(i) => &self.triangles[self.starts[i] as usize..self.starts[i + 1] as usize],
@@ -131,7 +125,6 @@ impl Edges {
     }
 
     /// Number of edges with exactly one triangle.
-    #[must_use]
     pub fn boundary_count(&self) -> usize {
         self.iter()
             .filter(|(_, triangles)| triangles.len() == 1)

@@ -14,7 +14,6 @@ use crate::num::Precision;
 /// `lodmark mesh 1`, the bits per coordinate (`u64`), positions (3 `f64` each), triangles (3 `u32` each), channels (kind
 /// and set, 2 bytes each), attribute values (`f64`), corners (3 `u32` each), material names (UTF-8), the material of
 /// every triangle (`u32`), material libraries (UTF-8).
-#[must_use]
 pub fn content_sha256(mesh: &Mesh) -> String {
     let mut digits = String::with_capacity(64);
     for byte in content_digest(mesh) {
@@ -25,7 +24,6 @@ pub fn content_sha256(mesh: &Mesh) -> String {
 }
 
 /// The 32 bytes of [`content_sha256`].
-#[must_use]
 pub fn content_digest(mesh: &Mesh) -> [u8; 32] {
     let mut sink = Sink {
         hash: Sha256::new(),

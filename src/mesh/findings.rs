@@ -91,7 +91,6 @@ pub struct Findings {
 
 impl Findings {
     /// Examines `mesh`. O(n log n); triangles that repeat a vertex are counted and otherwise left aside.
-    #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
         let edges = Edges::of(mesh);
         let around = VertexTriangles::of(mesh);
@@ -133,7 +132,6 @@ impl Findings {
     }
 
     /// The problems, each with its name; remarks are not among them. Empty where the mesh is clean.
-    #[must_use]
     pub fn problems(&self) -> Vec<(&'static str, &Finding)> {
         [
             ("triangles that repeat a vertex", &self.degenerate_triangles),
@@ -158,7 +156,6 @@ impl Findings {
     }
 
     /// The findings as lines of text, the verdict last.
-    #[must_use]
     pub fn report(&self) -> String {
         let mut text = format!(
             "vertices            {}\ntriangles           {}\nedges               {}\ncomponents          {}\n\

@@ -56,7 +56,6 @@ impl Mesh {
     /// The faces that may touch one of the boxes (least and largest corner), of every `stride`-th one (0 is as 1), in
     /// their order, without attributes and with the vertices they need; a grid of 128 cells a side decides, so faces
     /// nearby may come along. O(n), and for every box O(its cells).
-    #[must_use]
     pub fn near(&self, boxes: &[[DVec3; 2]], stride: usize) -> Self {
         let Some((low, high)) = self.bounds() else {
             return Self::default();

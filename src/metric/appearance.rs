@@ -45,7 +45,6 @@ pub struct WorstView {
 
 impl Appearance {
     /// The view and shading with the largest mean squared difference; flat before Gouraud, then the first of equals.
-    #[must_use]
     pub fn worst(&self) -> WorstView {
         let (flat, gouraud) = (self.flat.worst(), self.gouraud.worst());
         let ((view, error), shading) = if gouraud.1.mean_square() > flat.1.mean_square() {

@@ -108,7 +108,6 @@ pub struct PixelDifference {
 
 impl ImageComparison {
     /// True where nothing differs.
-    #[must_use]
     pub fn is_equal(&self) -> bool {
         *self == Self::Equal
     }
@@ -160,7 +159,6 @@ impl fmt::Display for List<'_> {
 }
 
 /// Compares two images; O(pixels).
-#[must_use]
 pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> ImageComparison {
     let size = |p: &Grid<P>| (p.width(), p.height());
     if size(expected) != size(actual) {

@@ -67,7 +67,6 @@ pub struct FoldReference {
 impl FoldReference {
     /// Those of a mesh, or of a part of it that has all faces within `reach` (a length) of what will be asked about.
     /// O(n log n).
-    #[must_use]
     pub fn of(part: &FramedMesh, reach: f64) -> Self {
         let creases = folded(part).into_iter().map(|[a, b]| [a, b, b]);
         Self {
@@ -78,7 +77,6 @@ impl FoldReference {
     }
 
     /// True for a folded edge that is away from all folded edges of the reference.
-    #[must_use]
     pub fn is_new(&self, [a, b]: [DVec3; 2]) -> bool {
         let middle = (a + b) * 0.5;
         let near = self
@@ -89,7 +87,6 @@ impl FoldReference {
     }
 
     /// As [`Orientation::is_flipped`]; false where there is no surface.
-    #[must_use]
     pub fn is_flipped(&self, face: [DVec3; 3]) -> bool {
         let orientation = self.orientation.as_ref();
         orientation.is_some_and(|orientation| orientation.is_flipped(face))
@@ -105,7 +102,6 @@ pub struct Orientation {
 
 impl Orientation {
     /// The orientation of `reference`; `None` without triangles. O(n log n).
-    #[must_use]
     pub fn new(reference: &FramedMesh) -> Option<Self> {
         let (low, high) = reference.in_frame_units().bounds()?;
         Self::of_part(reference, REACH * length(high - low))
@@ -118,14 +114,12 @@ impl Orientation {
     }
 
     /// The surface.
-    #[must_use]
     pub fn surface(&self) -> &TriangleTree {
         &self.surface
     }
 
     /// True where some surface within reach looks as a face does, which is then not flipped; any part of the reference
     /// can say so.
-    #[must_use]
     pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let centroid = ((a + b) + c) / 3.0;
         let normal = area_normal([a, b, c]);
@@ -134,7 +128,6 @@ impl Orientation {
     }
 
     /// True where all of the surface around a face looks the other way. Faces without area have no side.
-    #[must_use]
     pub fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let normal = area_normal([a, b, c]);
         let centroid = ((a + b) + c) / 3.0;

@@ -174,19 +174,16 @@ impl ViewErrors {
     }
 
     /// The error of every view, in order.
-    #[must_use]
     pub fn views(&self) -> &[SquaredError] {
         &self.views
     }
 
     /// The error of the set as one mosaic: equation 2.
-    #[must_use]
     pub fn total(&self) -> SquaredError {
         self.total
     }
 
     /// Index and error of the view with the largest mean squared difference; the first of equals.
-    #[must_use]
     pub fn worst(&self) -> (usize, SquaredError) {
         let mut worst = (0, self.views[0]);
         for (i, &view) in self.views.iter().enumerate().skip(1) {

@@ -26,7 +26,6 @@ pub const RECORD_NAME: &str = "golden.txt";
 const SCALE: u8 = 4;
 
 /// Where the picture of an item lies.
-#[must_use]
 pub fn picture_path(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{}.png", name.replace('/', "_")))
 }

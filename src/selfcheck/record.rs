@@ -59,7 +59,6 @@ impl fmt::Display for Mismatch {
 
 impl Record {
     /// The record of the items.
-    #[must_use]
     pub fn of(items: &[Item]) -> Self {
         let pair = |i: &Item| (i.name.clone(), i.value.clone());
         Self {
@@ -98,7 +97,6 @@ impl Record {
     }
 
     /// The text of the record: equal records give equal bytes.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = HEADER.to_string();
         for (name, value) in &self.values {
@@ -108,13 +106,11 @@ impl Record {
     }
 
     /// Number of goldens.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
     /// True without any.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -125,7 +121,6 @@ impl Record {
     }
 
     /// The goldens whose names begin with `group/`.
-    #[must_use]
     pub fn group(&self, group: &str) -> Self {
         let own = |name: &str| {
             name.strip_prefix(group)
@@ -138,7 +133,6 @@ impl Record {
     }
 
     /// The goldens of some groups.
-    #[must_use]
     pub fn of_groups(&self, groups: &[&Group]) -> Self {
         let mut values = BTreeMap::new();
         for group in groups {
@@ -149,7 +143,6 @@ impl Record {
 
     /// Every golden that the items do not reproduce, every item without a golden, and every golden without an item;
     /// sorted by name.
-    #[must_use]
     pub fn compare(&self, items: &[Item]) -> Vec<Mismatch> {
         let found = Self::of(items).values;
         let names: std::collections::BTreeSet<&String> =

@@ -55,7 +55,6 @@ fn units(corners: &[[f64; 3]]) -> Vec<DVec3> {
 }
 
 /// The 20 vertices of the regular dodecahedron.
-#[must_use]
 pub fn dodecahedron() -> Vec<DVec3> {
     units(&[
         [1.0, 1.0, 1.0],
@@ -66,14 +65,12 @@ pub fn dodecahedron() -> Vec<DVec3> {
 }
 
 /// The 24 vertices of the small rhombicuboctahedron.
-#[must_use]
 pub fn rhombicuboctahedron() -> Vec<DVec3> {
     units(&[[SILVER, 1.0, 1.0], [1.0, SILVER, 1.0], [1.0, 1.0, SILVER]])
 }
 
 /// `count` directions spread evenly along a spiral (spherical Fibonacci points; Swinbank & Purser 2006): all stand for
 /// nearly the same share of the sphere, and no two look along one axis.
-#[must_use]
 pub fn spiral(count: u32) -> Vec<DVec3> {
     let point = |i: u32| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
@@ -88,7 +85,6 @@ pub fn spiral(count: u32) -> Vec<DVec3> {
 ///
 /// About z by the golden angle and about x by the share `sqrt(2) - 1` of a circle, `round` times each: no two rounds
 /// look from the same side.
-#[must_use]
 pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
     if round == 0 {
         return directions.to_vec();
@@ -109,14 +105,12 @@ pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
 /// The vertices of the octahedron subdivided `k` times; those of `k - 1` come first, in the same order.
 ///
 /// `k` above `OCTAHEDRON_LIMIT` counts as the limit.
-#[must_use]
 pub fn octahedron(k: u32) -> Vec<DVec3> {
     octahedron_faces(k).0
 }
 
 /// [`octahedron`] with its 8 * 4^k triangles, counter-clockwise seen from outside: what the share of the sphere that
 /// a direction stands for is computed from.
-#[must_use]
 pub fn octahedron_faces(k: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut vertices = vec![
         DVec3::X,

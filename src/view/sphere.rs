@@ -37,7 +37,6 @@ impl Sphere {
     /// `|p - center| <= radius` holds for each of them, computed as [`math::length`] does. The radius is minimal up to
     /// rounding (some 1e-15 of it), and infinite where it exceeds the largest `f64`.
     /// O(vertices + triangles) for each of a dozen pivots.
-    #[must_use]
     pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
         Self::of_points(&referenced(mesh))
     }
@@ -45,14 +44,12 @@ impl Sphere {
     /// The smallest sphere that contains `points`, all of them finite; `None` where there are none.
     ///
     /// As [`Sphere::of_mesh`]; the same bits for every order of the points and with any of them repeated.
-    #[must_use]
     pub fn of_points(points: &[DVec3]) -> Option<Self> {
         let (frame, sphere) = solve_scaled(points)?;
         Some(sphere.leave_frame(frame))
     }
 
     /// The same sphere in units of `frame`; exact unless a number becomes subnormal.
-    #[must_use]
     pub fn enter_frame(self, frame: Frame) -> Self {
         Self {
             center: frame.enter(self.center),
@@ -61,7 +58,6 @@ impl Sphere {
     }
 
     /// Undoes [`Sphere::enter_frame`].
-    #[must_use]
     pub fn leave_frame(self, frame: Frame) -> Self {
         Self {
             center: frame.leave(self.center),
@@ -74,7 +70,6 @@ impl Sphere {
 ///
 /// Nothing overflows on the way, whatever the coordinates. A mesh that is one point gets the frame of its largest
 /// coordinate; one without triangles, or at the origin, the identity. Costs as much as [`Sphere::of_mesh`].
-#[must_use]
 pub fn frame_of(mesh: &Mesh) -> Frame {
     let points = referenced(mesh);
     let Some((frame, sphere)) = solve_scaled(&points) else {

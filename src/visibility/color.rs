@@ -2,7 +2,6 @@
 
 /// Red, green and blue for a visibility in [0, 1]: white at 0, red at 1/3, yellow at 2/3, green at 1, and in between
 /// what lies between (section 3, end).
-#[must_use]
 pub fn color(visibility: f64) -> [u8; 3] {
     let scaled = 3.0 * visibility.clamp(0.0, 1.0);
     let level = |x: f64| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;

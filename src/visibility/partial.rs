@@ -61,25 +61,21 @@ impl PartialVisibility {
     }
 
     /// The options that it was counted with.
-    #[must_use]
     pub fn options(&self) -> &MeasureOptions {
         &self.options
     }
 
     /// The views that were counted, ascending and apart from each other.
-    #[must_use]
     pub fn views(&self) -> &[Range<u32>] {
         &self.ranges
     }
 
     /// Number of triangles of its mesh.
-    #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.counts.views.len()
     }
 
     /// True where every view was counted.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         matches!(self.ranges.as_slice(), [all] if *all == (0..self.options.cameras()))
     }

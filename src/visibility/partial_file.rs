@@ -30,7 +30,6 @@ impl PartialVisibility {
     ///
     /// # Panics
     /// Never: options are plain numbers and names.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let options = serde_json::to_string(&self.options).expect("plain numbers and names");
         let counts = &self.counts;

@@ -13,7 +13,6 @@ pub struct VisibilityTable {
 impl VisibilityTable {
     /// A row for every camera with a bit for every triangle, eight to a byte, the first in the lowest bit;
     /// `numpy.unpackbits(F, axis=1, count=triangles, bitorder="little")` unpacks it. Bits beyond the last triangle are 0.
-    #[must_use]
     pub fn packed(&self) -> &Grid<u8> {
         &self.packed
     }
@@ -22,7 +21,6 @@ impl VisibilityTable {
     ///
     /// # Panics
     /// For a camera or triangle that there is not.
-    #[must_use]
     pub fn sees(&self, camera: u32, triangle: usize) -> bool {
         assert!(
             triangle < self.triangles,

@@ -72,13 +72,11 @@ impl<'a> Judge<'a> {
     }
 
     /// The views of the pictures in file units; `None` where none are drawn.
-    #[must_use]
     pub fn views(&self) -> Option<&ViewSet> {
         self.views.as_ref().map(|[_, set]| set)
     }
 
     /// A candidate in the frame of the reference, ready to be drawn.
-    #[must_use]
     pub fn scene(&self, candidate: &Mesh) -> Scene {
         Scene::of(&candidate.enter_frame(self.frame))
     }

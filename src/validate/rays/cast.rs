@@ -27,7 +27,6 @@ pub struct RayCaster {
 
 impl RayCaster {
     /// Takes the positions as they are and builds the hierarchy; O(n log n), on one thread.
-    #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         Self {
             positions: mesh.positions().to_vec(),

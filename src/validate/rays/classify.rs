@@ -79,19 +79,16 @@ impl Class {
     ];
 
     /// True for the three reasons why pictures may differ.
-    #[must_use]
     pub fn is_explained(self) -> bool {
         matches!(self, Self::Edge | Self::DepthTie | Self::Degenerate)
     }
 
     /// True where nothing explains the difference.
-    #[must_use]
     pub fn is_bug(self) -> bool {
         self > Self::Degenerate
     }
 
     /// Name in reports.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Background => "background",
@@ -110,7 +107,6 @@ impl Class {
     }
 
     /// Colour in pictures: greys without a difference, cold ones where it is explained, warm ones for bugs.
-    #[must_use]
     pub fn color(self) -> [u8; 3] {
         match self {
             Self::Background => [24, 24, 24],

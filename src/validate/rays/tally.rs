@@ -10,7 +10,6 @@ pub const WITNESSES: usize = 20;
 
 /// The largest share of pixels that may differ and be explained: 1e-4 at 16 sub-pixel bits; 5e-3 at 8, where snapping
 /// moves outlines 256 times as far.
-#[must_use]
 pub const fn cap(bits: SubpixelBits) -> f64 {
     match bits {
         SubpixelBits::Eight => 5e-3,
@@ -59,19 +58,16 @@ impl Tally {
     }
 
     /// Samples of a class.
-    #[must_use]
     pub fn of(&self, class: Class) -> u64 {
         self.counts[class as usize]
     }
 
     /// Samples that differ for one of the three reasons.
-    #[must_use]
     pub fn explained(&self) -> u64 {
         self.sum(Class::is_explained)
     }
 
     /// Samples whose difference nothing explains.
-    #[must_use]
     pub fn unexplained(&self) -> u64 {
         self.sum(Class::is_bug)
     }
@@ -82,7 +78,6 @@ impl Tally {
     }
 
     /// Explained samples as a share of all; 0 without any.
-    #[must_use]
     pub fn explained_share(&self) -> f64 {
         if self.pixels == 0 {
             0.0
@@ -92,7 +87,6 @@ impl Tally {
     }
 
     /// True where every difference is explained and those are no larger a share of all samples than `cap`.
-    #[must_use]
     pub fn passes(&self, cap: f64) -> bool {
         self.unexplained() == 0 && self.explained_share() <= cap
     }
