@@ -120,66 +120,30 @@ mod front;
 mod parallel;
 mod progress;
 
+/// The rooms, public to the tests and benches of this crate and to nobody else.
+#[path = ""]
+mod rooms {
+    pub mod bound;
+    #[cfg(feature = "cli")]
+    pub mod cli;
+    pub mod collapse;
+    pub mod encode;
+    pub mod geometry;
+    pub mod io;
+    pub mod mesh;
+    pub mod metric;
+    pub mod num;
+    pub mod raster;
+    pub mod selfcheck;
+    pub mod simplify;
+    pub mod validate;
+    pub mod view;
+    pub mod visibility;
+}
 #[cfg(feature = "internals")]
-pub mod bound;
+pub use rooms::*;
 #[cfg(not(feature = "internals"))]
-mod bound;
-#[cfg(all(feature = "cli", feature = "internals"))]
-pub mod cli;
-#[cfg(all(feature = "cli", not(feature = "internals")))]
-mod cli;
-#[cfg(feature = "internals")]
-pub mod collapse;
-#[cfg(not(feature = "internals"))]
-mod collapse;
-#[cfg(feature = "internals")]
-pub mod encode;
-#[cfg(not(feature = "internals"))]
-mod encode;
-#[cfg(feature = "internals")]
-pub mod geometry;
-#[cfg(not(feature = "internals"))]
-mod geometry;
-#[cfg(feature = "internals")]
-pub mod io;
-#[cfg(not(feature = "internals"))]
-mod io;
-#[cfg(feature = "internals")]
-pub mod mesh;
-#[cfg(not(feature = "internals"))]
-mod mesh;
-#[cfg(feature = "internals")]
-pub mod metric;
-#[cfg(not(feature = "internals"))]
-mod metric;
-#[cfg(feature = "internals")]
-pub mod num;
-#[cfg(not(feature = "internals"))]
-mod num;
-#[cfg(feature = "internals")]
-pub mod raster;
-#[cfg(not(feature = "internals"))]
-mod raster;
-#[cfg(feature = "internals")]
-pub mod selfcheck;
-#[cfg(not(feature = "internals"))]
-mod selfcheck;
-#[cfg(feature = "internals")]
-pub mod simplify;
-#[cfg(not(feature = "internals"))]
-mod simplify;
-#[cfg(feature = "internals")]
-pub mod validate;
-#[cfg(not(feature = "internals"))]
-mod validate;
-#[cfg(feature = "internals")]
-pub mod view;
-#[cfg(not(feature = "internals"))]
-mod view;
-#[cfg(feature = "internals")]
-pub mod visibility;
-#[cfg(not(feature = "internals"))]
-mod visibility;
+use rooms::*;
 
 pub use error::{Error, Result};
 pub use front::{

@@ -126,6 +126,7 @@ const EVERYWHERE: &str = "parallel";
 
 /// `crate::a::b` and `crate::{a, b::c}` both import `a`; names re-exported at the root count as their stage.
 fn imports(source: &str) -> Vec<String> {
+    let source = source.replace("in crate::rooms::", "in crate::");
     let mut found = Vec::new();
     for (at, _) in source.match_indices("crate::") {
         let rest = &source[at + "crate::".len()..];

@@ -100,7 +100,7 @@ pub(super) fn method_options(args: &SimplifyArgs) -> Result<MethodOptions> {
 }
 
 /// Puts every option of the command below the heading of the methods that understand it.
-pub(in crate::cli) fn with_headings(command: Command) -> Command {
+pub(in crate::rooms::cli) fn with_headings(command: Command) -> Command {
     command.mut_args(|arg| {
         let id = arg.get_id().as_str().to_owned();
         match GROUPS.iter().find(|g| g.options.contains(&id.as_str())) {

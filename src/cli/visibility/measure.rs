@@ -21,7 +21,7 @@ use crate::{
 /// Measure how visible every triangle is from all around (Zhang & Turk 2002)
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::PARTIAL)]
-pub(in crate::cli) struct VisibilityArgs {
+pub(in crate::rooms::cli) struct VisibilityArgs {
     /// The mesh: .obj, .ply or .stl; it is brought into canonical order first
     #[arg(value_name = "IN")]
     input: PathBuf,
@@ -97,7 +97,7 @@ fn parse_range(text: &str) -> Result<Range<u32>, String> {
 }
 
 /// Parses a number of cameras into the number of subdivisions of the octahedron.
-pub(in crate::cli) fn parse_cameras(text: &str) -> Result<u32, String> {
+pub(in crate::rooms::cli) fn parse_cameras(text: &str) -> Result<u32, String> {
     let known = [6, 18, 66, 258, 1_026, 4_098_u32];
     let found = text
         .parse()
@@ -140,7 +140,7 @@ impl Choice {
     }
 }
 
-pub(in crate::cli) fn run(
+pub(in crate::rooms::cli) fn run(
     options: &VisibilityArgs,
     common: &Common,
     terminal: &Terminal,

@@ -13,7 +13,7 @@ use crate::{
 /// Put partial visibility results together, in any order: the bytes of a run over all their views
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::PARTIAL)]
-pub(in crate::cli) struct MergeArgs {
+pub(in crate::rooms::cli) struct MergeArgs {
     /// Files that `visibility --partial` or this command wrote
     #[arg(value_name = "PARTIAL", required = true)]
     partials: Vec<PathBuf>,
@@ -22,7 +22,7 @@ pub(in crate::cli) struct MergeArgs {
     out: PathBuf,
 }
 
-pub(in crate::cli) fn run(
+pub(in crate::rooms::cli) fn run(
     options: &MergeArgs,
     common: &Common,
     terminal: &Terminal,
@@ -65,7 +65,7 @@ pub(super) fn read(path: &Path) -> Result<PartialVisibility> {
 }
 
 /// The visibility that a survey in a file holds, which must be of `mesh` and of all views.
-pub(in crate::cli) fn finish(
+pub(in crate::rooms::cli) fn finish(
     path: &Path,
     survey: &PartialVisibility,
     mesh: &Mesh,

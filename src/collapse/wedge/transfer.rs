@@ -31,7 +31,7 @@ const FEW: usize = 48;
 
 /// Buffers of [`transfer`]; all are equal.
 #[derive(Clone, Debug, Default)]
-pub(in crate::collapse) struct WedgeScratch {
+pub(in crate::rooms::collapse) struct WedgeScratch {
     corners: Vec<Corner>,
     values: Vec<f64>,
     /// For every class, the first wedge of a corner at either end of the edge.
@@ -47,7 +47,7 @@ impl PartialEq for WedgeScratch {
 }
 
 /// Gives the new vertex its wedges in `patch.added` and appends their rows to `patch.rows`.
-pub(in crate::collapse) fn transfer(
+pub(in crate::rooms::collapse) fn transfer(
     live: &LiveMesh,
     star: &EdgeStar,
     position: DVec3,

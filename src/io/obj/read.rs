@@ -22,7 +22,7 @@ use crate::{
     num::{Each, Frame, Precision, math},
 };
 
-pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
+pub(in crate::rooms::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
     let scan = normal_form::scan(bytes)?;
     let parsed = parse(&scan).map_err(|error| {
         let place = first_bad_number(bytes, Precision::F64);

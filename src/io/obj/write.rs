@@ -12,7 +12,7 @@ use crate::{
     num::Precision,
 };
 
-pub(in crate::io) fn encode(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
+pub(in crate::rooms::io) fn encode(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
     let attributes = mesh.attributes();
     let per_vertex = PerVertex::of(mesh);
     let mut notes = notes(mesh, &per_vertex);

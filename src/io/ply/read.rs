@@ -22,7 +22,7 @@ use crate::{
     num::Precision,
 };
 
-pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
+pub(in crate::rooms::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
     let header = header::parse(bytes)?;
     let cursor = ByteCursor::new(bytes, header.body);
     let (encoding, (mesh, notes)) = match header.storage {

@@ -13,13 +13,13 @@ use crate::{
 
 /// Storage of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io) enum Numbers {
+pub(in crate::rooms::io) enum Numbers {
     Text,
     LittleEndian,
     BigEndian,
 }
 
-pub(in crate::io) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
+pub(in crate::rooms::io) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, Vec<String>) {
     let plan = Plan::of(mesh);
     let mut notes = plan.notes(mesh);
     let mut sink = Sink {

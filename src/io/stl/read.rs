@@ -32,13 +32,13 @@ fn declared(bytes: &[u8]) -> Option<u32> {
 }
 
 /// Whether the length is exactly that of a binary file.
-pub(in crate::io) fn is_binary(bytes: &[u8]) -> bool {
+pub(in crate::rooms::io) fn is_binary(bytes: &[u8]) -> bool {
     declared(bytes)
         .is_some_and(|n| HEADER as u64 + RECORD as u64 * u64::from(n) == bytes.len() as u64)
 }
 
 /// Whether the first words are those of a text file.
-pub(in crate::io) fn is_ascii(bytes: &[u8]) -> bool {
+pub(in crate::rooms::io) fn is_ascii(bytes: &[u8]) -> bool {
     let mut words = Words::new(&bytes[..bytes.len().min(1024)], 0, 1);
     if !words.next_is("solid") {
         return false;
@@ -48,7 +48,7 @@ pub(in crate::io) fn is_ascii(bytes: &[u8]) -> bool {
     next.eq_ignore_ascii_case(b"facet") || next.eq_ignore_ascii_case(b"endsolid")
 }
 
-pub(in crate::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
+pub(in crate::rooms::io) fn read(bytes: &[u8]) -> Result<Loaded, String> {
     let starts_solid = Words::new(bytes, 0, 1).next_is("solid");
     // A name, colours or nothing fill the header of a binary file, then follows the count: seldom all in letters.
     let is_text = bytes

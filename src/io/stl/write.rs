@@ -9,7 +9,7 @@ use crate::{
     num::{Frame, Precision, math},
 };
 
-pub(in crate::io) fn encode(mesh: &Mesh, text: bool) -> Result<(Vec<u8>, Vec<String>)> {
+pub(in crate::rooms::io) fn encode(mesh: &Mesh, text: bool) -> Result<(Vec<u8>, Vec<String>)> {
     let notes = notes(mesh);
     for (v, &p) in mesh.positions().iter().enumerate() {
         if !Precision::F32.round_vector(p).is_finite() {

@@ -49,13 +49,13 @@ impl ScreenVertex {
 
 /// The part of a [`ScreenVertex`] that coverage and depth need, in half the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::raster) struct ScreenPoint {
+pub(in crate::rooms::raster) struct ScreenPoint {
     /// Column, in sub-pixels.
-    pub(in crate::raster) x: i32,
+    pub(in crate::rooms::raster) x: i32,
     /// Row, in sub-pixels, downwards.
-    pub(in crate::raster) y: i32,
+    pub(in crate::rooms::raster) y: i32,
     /// Depth, in units of 2^-32.
-    pub(in crate::raster) depth: u32,
+    pub(in crate::rooms::raster) depth: u32,
 }
 
 impl From<ScreenVertex> for ScreenPoint {

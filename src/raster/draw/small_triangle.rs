@@ -19,9 +19,9 @@ const ROUND: f64 = 4_503_599_627_370_496.0;
 
 /// A small triangle ready to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::raster) struct SmallTriangle {
+pub(in crate::rooms::raster) struct SmallTriangle {
     /// Pixels whose centres the bounding box contains, inside the image.
-    pub(in crate::raster) bounds: PixelRect,
+    pub(in crate::rooms::raster) bounds: PixelRect,
     /// Edge functions at the first pixel of the bounds, with the bias: inside where none is negative.
     edges: [i32; 3],
     step_x: [i32; 3],
@@ -38,7 +38,7 @@ pub(in crate::raster) struct SmallTriangle {
 
 /// Outcome of [`SmallTriangle::fit`].
 #[derive(Clone, Copy, Debug)]
-pub(in crate::raster) enum Fit {
+pub(in crate::rooms::raster) enum Fit {
     /// It fits.
     Small(SmallTriangle),
     /// It draws nothing: no area after snapping, culled, or no pixel centre in its bounding box.
@@ -49,9 +49,9 @@ pub(in crate::raster) enum Fit {
 
 /// Covered pixels: an index and `sum(e_i * depth_above_i)` for each.
 #[derive(Clone, Debug, Default)]
-pub(in crate::raster) struct Covered {
-    pub(in crate::raster) at: Vec<u32>,
-    pub(in crate::raster) above: Vec<i64>,
+pub(in crate::rooms::raster) struct Covered {
+    pub(in crate::rooms::raster) at: Vec<u32>,
+    pub(in crate::rooms::raster) above: Vec<i64>,
 }
 
 impl SmallTriangle {
@@ -59,7 +59,7 @@ impl SmallTriangle {
     /// Sets up a triangle from its corners on the screen, culled and cut to the image as [`Setup::new`] does it.
     ///
     /// [`Setup::new`]: super::Setup::new
-    pub(in crate::raster) fn fit(
+    pub(in crate::rooms::raster) fn fit(
         [a, mut b, mut c]: [ScreenPoint; 3],
         bits: SubpixelBits,
         cull: Cull,
@@ -121,13 +121,13 @@ impl SmallTriangle {
 
     /// The least depth of its corners.
     #[inline]
-    pub(in crate::raster) fn nearest(&self) -> u32 {
+    pub(in crate::rooms::raster) fn nearest(&self) -> u32 {
         self.depth_min
     }
 
     /// Lists the covered pixels; `index` of pixel (x, y) is `(y - origin.1 << shift) + x - origin.0`.
     #[inline]
-    pub(in crate::raster) fn list(
+    pub(in crate::rooms::raster) fn list(
         &self,
         origin: (i32, i32),
         shift: u32,
@@ -214,7 +214,7 @@ impl SmallTriangle {
     ///
     /// The product with the reciprocal is off by less than 2^-18, so its nearest integer is the quotient or one more.
     #[inline]
-    pub(in crate::raster) fn depth(&self, above: i64) -> u32 {
+    pub(in crate::rooms::raster) fn depth(&self, above: i64) -> u32 {
         let nearest = (above as f64 * self.reciprocal + ROUND).to_bits() as u32;
         let rest = above - i64::from(nearest) * self.area;
         self.depth_min

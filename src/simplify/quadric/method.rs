@@ -157,14 +157,14 @@ impl Estimates for QuadricMethod {
 
 impl QuadricMethod {
     /// The quadrics of some vertices, under new ids.
-    pub(in crate::simplify) fn part_of(&self, vertices: &[u32]) -> Self {
+    pub(in crate::rooms::simplify) fn part_of(&self, vertices: &[u32]) -> Self {
         Self {
             quadrics: vertices.iter().map(|&v| *self.quadric(v)).collect(),
         }
     }
 
     /// Takes over the quadrics of a part.
-    pub(in crate::simplify) fn take_back(&mut self, part: &Self, vertices: &[u32]) {
+    pub(in crate::rooms::simplify) fn take_back(&mut self, part: &Self, vertices: &[u32]) {
         for (&v, quadric) in vertices.iter().zip(&part.quadrics) {
             self.quadrics[v as usize] = *quadric;
         }
