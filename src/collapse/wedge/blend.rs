@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The values of corners, and their weights, which sum to 1.
-pub(in crate::collapse) struct Blend<'a, const N: usize> {
+pub(in crate::rooms::collapse) struct Blend<'a, const N: usize> {
     /// The values of each corner.
     pub values: [&'a [f64]; N],
     /// What each corner counts.
@@ -19,7 +19,7 @@ impl<const N: usize> Blend<'_, N> {
     /// Writes the mean into `into`, rounded to the precision: within the range of the values; unit for normals and
     /// tangents, or `otherwise` where they cancel; of skins the four heaviest joints with weights that sum to 1; of
     /// custom attributes and the signs of tangents the value that weighs most.
-    pub(in crate::collapse) fn write(
+    pub(in crate::rooms::collapse) fn write(
         &self,
         kind: ChannelKind,
         precision: Precision,
