@@ -33,7 +33,6 @@ pub fn check_folds(live: &LiveMesh, patch: &Patch, rules: Rules) -> Result<(), R
 /// before and after.
 ///
 /// O(faces * (log faces + valence)), with the smaller valence of a side's ends.
-#[must_use]
 pub fn fold_amount(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
     let sum = |faces, after| {
         let mut sum = 0.0;
@@ -50,7 +49,6 @@ pub fn fold_amount(live: &LiveMesh, patch: &Patch, cosine: f64) -> [f64; 2] {
 }
 
 /// True where the normals of the two faces at an edge have a cosine below the given one; false for other edges. O(valence).
-#[must_use]
 pub fn is_folded(live: &LiveMesh, edge: u32, cosine: f64) -> bool {
     let Some([a, b]) = live.edge(edge) else {
         return false;

@@ -127,7 +127,6 @@ pub struct Recorder {
 
 impl Recorder {
     /// An empty history of a run on `mesh` in `frame`.
-    #[must_use]
     pub fn new(mesh: &Mesh, frame: Frame) -> Self {
         Self {
             history: History {
@@ -147,7 +146,6 @@ impl Recorder {
     }
 
     /// The history, with the resolved options of the run (JSON).
-    #[must_use]
     pub fn finish(self, options: String) -> History {
         let Self { mut history } = self;
         history.header.options = options;

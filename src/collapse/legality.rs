@@ -185,7 +185,6 @@ pub(super) fn turn(
 }
 
 /// True where `normal2`, the squared length of the cross product, is too small for the triangle's longest side.
-#[must_use]
 pub fn is_degenerate(points: [DVec3; 3], normal2: f64) -> bool {
     let side2 = longest2(points);
     normal2 <= (DEGENERATE * DEGENERATE) * (side2 * side2)

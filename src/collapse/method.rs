@@ -15,7 +15,6 @@ pub struct Admitted(DVec3);
 
 impl Admitted {
     /// The position in frame units.
-    #[must_use]
     pub fn position(self) -> DVec3 {
         self.0
     }
@@ -49,7 +48,6 @@ impl<'a> Site<'a> {
     }
 
     /// The one position the rules leave, or `None` where the method chooses.
-    #[must_use]
     pub fn fixed(&self) -> Option<DVec3> {
         match self.anchor {
             Anchor::Free => None,
@@ -192,7 +190,6 @@ pub struct MethodScratch {
 
 impl MethodScratch {
     /// For evaluations that nothing else runs beside: such an evaluation may use other threads itself.
-    #[must_use]
     pub fn alone() -> Self {
         Self {
             alone: true,

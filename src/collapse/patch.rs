@@ -114,7 +114,6 @@ impl Patch {
     }
 
     /// The patch that takes back one that moves or flips: faces and position as before. Rows that it appended stay unused.
-    #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
             removed: self.added.clone(),
@@ -129,7 +128,6 @@ impl Patch {
     }
 
     /// The edge that this patch flips, the smaller end first; `None` where it is no flip.
-    #[must_use]
     pub fn flipped(&self) -> Option<[u32; 2]> {
         let ([f, g], [new_f, new_g], None) = (&self.removed[..], &self.added[..], self.moved)
         else {
@@ -144,7 +142,6 @@ impl Patch {
     }
 
     /// Corner positions of one of the `removed` faces, before or after the commit.
-    #[must_use]
     pub fn before(&self, live: &LiveMesh, face: &PatchFace) -> [DVec3; 3] {
         face.corners.each(|v| match self.moved {
             Some(m) if m.vertex == v => m.from,
@@ -153,7 +150,6 @@ impl Patch {
     }
 
     /// Corner positions of one of the `added` faces, before or after the commit.
-    #[must_use]
     pub fn after(&self, live: &LiveMesh, face: &PatchFace) -> [DVec3; 3] {
         face.corners.each(|v| match self.moved {
             Some(m) if m.vertex == v => m.to,

@@ -65,13 +65,11 @@ impl<'a> Replay<'a> {
     }
 
     /// The mesh where it is now.
-    #[must_use]
     pub fn live(&self) -> &LiveMesh {
         &self.live
     }
 
     /// Number of records that are applied.
-    #[must_use]
     pub fn applied(&self) -> usize {
         self.undo.len()
     }

@@ -86,7 +86,6 @@ impl Star {
     }
 
     /// Mean length of the edges at the vertex; 0 for a vertex without faces.
-    #[must_use]
     pub fn mean_edge(&self, live: &LiveMesh) -> f64 {
         let lengths = self.neighbors.iter();
         let sum: f64 = lengths
@@ -96,7 +95,6 @@ impl Star {
     }
 
     /// Unit normal, weighted by areas; `None` where the faces cancel.
-    #[must_use]
     pub fn normal(&self, live: &LiveMesh) -> Option<DVec3> {
         let normals = self.faces.iter();
         let sum = normals

@@ -27,7 +27,6 @@ impl PixelRect {
     };
 
     /// All pixels of an image.
-    #[must_use]
     pub const fn image(width: u32, height: u32) -> Self {
         Self {
             x0: 0,
@@ -39,7 +38,6 @@ impl PixelRect {
 
     /// Pixels whose centres lie in a box of sub-pixels, borders included; the snapped corners of a triangle span it.
     #[inline]
-    #[must_use]
     pub fn with_centers_in(
         [x_min, x_max]: [i32; 2],
         [y_min, y_max]: [i32; 2],
@@ -58,7 +56,6 @@ impl PixelRect {
 
     /// One pixel.
     #[inline]
-    #[must_use]
     pub const fn pixel(x: i32, y: i32) -> Self {
         Self {
             x0: x,
@@ -70,14 +67,12 @@ impl PixelRect {
 
     /// True where it has no pixel.
     #[inline]
-    #[must_use]
     pub const fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
 
     /// The pixels in both.
     #[inline]
-    #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
             x0: self.x0.max(other.x0),
@@ -89,7 +84,6 @@ impl PixelRect {
 
     /// The smallest region that contains both; an empty one adds nothing.
     #[inline]
-    #[must_use]
     pub fn union(self, other: Self) -> Self {
         if other.is_empty() {
             return self;
@@ -107,7 +101,6 @@ impl PixelRect {
 
     /// Columns.
     #[inline]
-    #[must_use]
     pub fn width(self) -> usize {
         if self.is_empty() {
             0
@@ -118,7 +111,6 @@ impl PixelRect {
 
     /// Rows.
     #[inline]
-    #[must_use]
     pub fn height(self) -> usize {
         if self.is_empty() {
             0

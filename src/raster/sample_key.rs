@@ -13,42 +13,36 @@ impl SampleKey {
 
     /// The key of a fragment of the triangle `id`.
     #[inline]
-    #[must_use]
     pub const fn new(depth: u32, id: u32) -> Self {
         Self((depth as u64) << 32 | id as u64)
     }
 
     /// The key with these bits.
     #[inline]
-    #[must_use]
     pub const fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
 
     /// `depth << 32 | id`.
     #[inline]
-    #[must_use]
     pub const fn bits(self) -> u64 {
         self.0
     }
 
     /// The depth, in units of 2^-32; `u32::MAX` for the background.
     #[inline]
-    #[must_use]
     pub const fn depth(self) -> u32 {
         (self.0 >> 32) as u32
     }
 
     /// The id of the triangle; `u32::MAX` for the background.
     #[inline]
-    #[must_use]
     pub const fn id(self) -> u32 {
         self.0 as u32
     }
 
     /// True where nothing covers the sample.
     #[inline]
-    #[must_use]
     pub const fn is_background(self) -> bool {
         self.0 == u64::MAX
     }

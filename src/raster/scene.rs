@@ -26,7 +26,6 @@ pub struct Scene {
 impl Scene {
     /// The triangles of a mesh, with ids in file order from 0, and its vertex colours if it has any (opacity is
     /// ignored, absent colours are white).
-    #[must_use]
     pub fn of(mesh: &FramedMesh) -> Self {
         let ids = (0..mesh.triangles().len() as u32).collect();
         let mut scene = Self::new(mesh.positions().to_vec(), mesh.triangles().to_vec(), ids);
@@ -52,7 +51,6 @@ impl Scene {
     ///
     /// # Panics
     /// Where `ids` and `triangles` differ in length, or a triangle names a vertex that does not exist.
-    #[must_use]
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, ids: Vec<u32>) -> Self {
         assert_eq!(ids.len(), triangles.len(), "an id for every triangle");
         let mut by_id: Vec<u32> = Vec::new();
@@ -74,7 +72,6 @@ impl Scene {
     ///
     /// # Panics
     /// Where `colors` covers some of the triangles only.
-    #[must_use]
     pub fn with_colors(mut self, colors: Vec<[[f64; 3]; 3]>) -> Self {
         assert!(
             colors.is_empty() || colors.len() == self.triangles.len(),
@@ -85,25 +82,21 @@ impl Scene {
     }
 
     /// Positions.
-    #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
     /// Vertices of every triangle.
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
     /// Red, green and blue in [0, 1] at the corners of every triangle; empty where everything is white.
-    #[must_use]
     pub fn colors(&self) -> &[[[f64; 3]; 3]] {
         &self.colors
     }
 
     /// Number of triangles.
-    #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
@@ -127,7 +120,6 @@ impl Scene {
 
     /// Unit vertex normals: the area-weighted sums of the normals around each vertex, zero where undefined. The first
     /// call visits every triangle.
-    #[must_use]
     pub fn normals(&self) -> &[DVec3] {
         self.normals.get_or_init(|| {
             let mut sums = vec![DVec3::ZERO; self.positions.len()];

@@ -19,7 +19,6 @@ pub struct NearestTriangle {
 
 impl NearestTriangle {
     /// The triangles of a mesh, or its vertices where it has no triangles; `None` where it has neither. O(n log n).
-    #[must_use]
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let corners = originals(mesh).into_iter().map(|pair| pair.from).collect();
         TriangleTree::new(corners).map(|tree| Self { tree })
@@ -42,7 +41,6 @@ impl Replacement for NearestTriangle {
 
 /// The triangles of a mesh, or its vertices as triangles without a size where it has none (a point cloud); each goes to
 /// itself as long as nothing else is proposed.
-#[must_use]
 pub fn originals(mesh: &Mesh) -> Vec<Pair> {
     let pair = |from: [DVec3; 3], triangle: usize| Pair {
         from,

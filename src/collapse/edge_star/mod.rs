@@ -41,14 +41,12 @@ pub struct StarFace {
 impl StarFace {
     /// True where both ends of the edge are corners.
     #[inline]
-    #[must_use]
     pub fn has_both(&self) -> bool {
         self.at[0] < 3 && self.at[1] < 3
     }
 
     /// The corner that becomes the new vertex; of a face with both ends, the one at the first.
     #[inline]
-    #[must_use]
     pub fn apex(&self) -> usize {
         usize::from(if self.at[0] < 3 {
             self.at[0]
@@ -59,7 +57,6 @@ impl StarFace {
 
     /// Its corners with the new vertex at `position`; meaningful where it survives.
     #[inline]
-    #[must_use]
     pub fn points_after(&self, position: DVec3) -> [DVec3; 3] {
         let mut points = self.points;
         points[self.apex()] = position;
@@ -144,14 +141,12 @@ impl EdgeStar {
     }
 
     /// `|u - w|^2`.
-    #[must_use]
     pub fn length2(&self) -> f64 {
         let d = self.points[1] - self.points[0];
         d.dot(d)
     }
 
     /// Midpoint of the edge.
-    #[must_use]
     pub fn midpoint(&self) -> DVec3 {
         (self.points[0] + self.points[1]) * 0.5
     }
@@ -184,7 +179,6 @@ impl EdgeStar {
     }
 
     /// Number of edges at an end that have not exactly two faces, the edge itself included.
-    #[must_use]
     pub fn singular_degree(&self, end: usize) -> u32 {
         let spokes = self.spokes.iter();
         let singular = spokes.filter(|s| s.faces[end] != 0 && s.faces[end] != 2);
@@ -194,7 +188,6 @@ impl EdgeStar {
     /// True where the faces at an end do not hang together through edges: two sheets that touch in a point.
     ///
     /// O(faces) for the usual fan, O(faces log faces) around a hub.
-    #[must_use]
     pub fn is_pinched(&self, end: usize) -> bool {
         let faces = self.faces.iter().filter(|f| f.at[end] < 3);
         pinch::is_pinched(faces.map(|f| {

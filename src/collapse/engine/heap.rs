@@ -19,7 +19,6 @@ pub struct Key {
 
 impl Key {
     /// Before every key of an evaluated edge: whoever has it is evaluated next.
-    #[must_use]
     pub const fn first(edge: [u32; 2]) -> Self {
         Self {
             primary: i64::MIN,
@@ -66,7 +65,6 @@ pub struct Heap {
 
 impl Heap {
     /// A heap of the given entries; O(n). An id that repeats is an error of the caller: the last one counts.
-    #[must_use]
     pub fn of(entries: Vec<(Key, u32)>) -> Self {
         let ids = entries.iter().map(|&(_, id)| id as usize + 1).max();
         let mut heap = Self {
@@ -85,25 +83,21 @@ impl Heap {
     }
 
     /// Number of entries.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// True where there is no entry.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
     /// The smallest key and its id.
-    #[must_use]
     pub fn peek(&self) -> Option<(Key, u32)> {
         self.nodes.first().copied()
     }
 
     /// The key of an id; `None` where it is not in the heap.
-    #[must_use]
     pub fn key(&self, id: u32) -> Option<Key> {
         let place = self.place(id)?;
         Some(self.nodes[place].0)

@@ -69,7 +69,6 @@ pub struct Engine {
 
 impl Engine {
     /// An engine that has not evaluated anything yet.
-    #[must_use]
     pub fn new(live: LiveMesh, rules: Rules, schedule: Schedule) -> Self {
         Self {
             live,
@@ -91,33 +90,28 @@ impl Engine {
     }
 
     /// Measures the true rank of every `every`-th collapse by evaluating all edges; 0 is off. Changes no result.
-    #[must_use]
     pub fn with_rank_measured(mut self, every: u64) -> Self {
         self.rank_every = every;
         self
     }
 
     /// Goes on counting from what was done before.
-    #[must_use]
     pub fn with_counters(mut self, counters: Counters) -> Self {
         self.counters = counters;
         self
     }
 
     /// The mesh as it is now.
-    #[must_use]
     pub fn live(&self) -> &LiveMesh {
         &self.live
     }
 
     /// Counts of the work done so far.
-    #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
     /// The mesh, and the counts of the work.
-    #[must_use]
     pub fn into_parts(self) -> (LiveMesh, Counters) {
         (self.live, self.counters)
     }

@@ -63,7 +63,6 @@ impl LiveMesh {
     /// A live copy of `mesh` (file units, canonical order) in units of `frame`.
     ///
     /// Triangles that repeat a vertex have no area and no edges to collapse: they are dead from the start. O(n).
-    #[must_use]
     pub fn new(mesh: &Mesh, frame: Frame) -> Self {
         let mut live = Self {
             frame,
@@ -134,43 +133,36 @@ impl LiveMesh {
     }
 
     /// From frame units to file units.
-    #[must_use]
     pub fn frame(&self) -> Frame {
         self.frame
     }
 
     /// The precision of the file.
-    #[must_use]
     pub fn precision(&self) -> Precision {
         self.precision
     }
 
     /// `p` as the file can store it, in frame units; `None` where it is not finite there.
-    #[must_use]
     pub fn round(&self, p: DVec3) -> Option<DVec3> {
         self.frame.round(p, self.precision)
     }
 
     /// Number of triangles that are left.
-    #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.live
     }
 
     /// Number of triangle ids, dead ones included.
-    #[must_use]
     pub fn triangle_ids(&self) -> u32 {
         self.faces.len() as u32
     }
 
     /// Number of vertex ids, unused ones included.
-    #[must_use]
     pub fn vertex_ids(&self) -> u32 {
         self.positions.len() as u32
     }
 
     /// Number of edge ids, unused ones included.
-    #[must_use]
     pub fn edge_ids(&self) -> u32 {
         self.edges.len() as u32
     }
@@ -180,13 +172,11 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such vertex.
     #[inline]
-    #[must_use]
     pub fn position(&self, vertex: u32) -> DVec3 {
         self.positions[vertex as usize]
     }
 
     /// All positions in frame units, by vertex id.
-    #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
@@ -196,7 +186,6 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such triangle.
     #[inline]
-    #[must_use]
     pub fn triangle(&self, id: u32) -> Option<[u32; 3]> {
         let corners = self.faces[id as usize];
         (corners[0] != NONE).then_some(corners)
@@ -206,7 +195,6 @@ impl LiveMesh {
     ///
     /// # Panics
     /// Where there is no such triangle.
-    #[must_use]
     pub fn points(&self, id: u32) -> Option<[DVec3; 3]> {
         Some(self.triangle(id)?.each(|v| self.position(v)))
     }
@@ -215,7 +203,6 @@ impl LiveMesh {
     ///
     /// # Panics
     /// Where there is no such triangle.
-    #[must_use]
     pub fn wedges(&self, id: u32) -> [u32; 3] {
         if self.wedges.is_empty() {
             [NONE; 3]
@@ -225,25 +212,21 @@ impl LiveMesh {
     }
 
     /// The material of a triangle, as [`Materials::of`].
-    #[must_use]
     pub fn material(&self, id: u32) -> u32 {
         self.materials.of(id as usize)
     }
 
     /// The values of all wedges.
-    #[must_use]
     pub fn rows(&self) -> &WedgeRows {
         &self.rows
     }
 
     /// Number of wedges, unused ones included.
-    #[must_use]
     pub fn wedge_count(&self) -> u32 {
         self.rows.count()
     }
 
     /// True where texture coordinates, colours or materials can make an edge a feature.
-    #[must_use]
     pub fn may_have_features(&self) -> bool {
         self.may_have_features
     }
@@ -252,7 +235,6 @@ impl LiveMesh {
     ///
     /// # Panics
     /// Where there is no such vertex.
-    #[must_use]
     pub fn is_locked(&self, vertex: u32) -> bool {
         self.locked[vertex as usize]
     }
@@ -290,7 +272,6 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such vertex.
     #[inline]
-    #[must_use]
     pub fn valence(&self, vertex: u32) -> usize {
         self.faces_at.of(vertex).len()
     }
@@ -300,7 +281,6 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such vertex.
     #[inline]
-    #[must_use]
     pub fn has_closed_fan(&self, vertex: u32) -> bool {
         self.faces_at.of(vertex).len() == self.edges_at.of(vertex).len()
     }
@@ -318,7 +298,6 @@ impl LiveMesh {
     /// # Panics
     /// Where there is no such id.
     #[inline]
-    #[must_use]
     pub fn edge(&self, id: u32) -> Option<[u32; 2]> {
         let ends = self.edges[id as usize].ends;
         (ends[0] != NONE).then_some(ends)
@@ -328,13 +307,11 @@ impl LiveMesh {
     ///
     /// # Panics
     /// Where there is no such id.
-    #[must_use]
     pub fn faces_at_edge(&self, id: u32) -> u32 {
         self.edges[id as usize].faces
     }
 
     /// The edge between two vertices; `None` also where there is no such vertex.
-    #[must_use]
     pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
         let (mut list, mut other) = (self.edges_at.get(a)?, b);
         if list.len() > FEW {
@@ -352,7 +329,6 @@ impl LiveMesh {
     ///
     /// # Panics
     /// Where there is no such triangle.
-    #[must_use]
     pub fn patch_face(&self, id: u32) -> PatchFace {
         PatchFace {
             id,

@@ -26,7 +26,6 @@ use crate::{Error, Progress, Result, parallel};
 /// A method that can work on parts of a mesh at the same time.
 pub trait Tileable: Method + Any {
     /// The method for a part whose vertex `i` is the vertex `vertices[i]` of the whole.
-    #[must_use]
     fn part(&self, part: &LiveMesh, vertices: &[u32]) -> Box<dyn Tileable>;
 
     /// Takes back the knowledge of a part, made by [`Tileable::part`], about its vertices.

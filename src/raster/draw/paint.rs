@@ -17,7 +17,6 @@ pub enum Paint {
 impl Paint {
     /// A triangle with one intensity, white or with colours at its corners.
     #[inline]
-    #[must_use]
     pub fn flat(intensity: f64, colors: Option<&[[f64; 3]; 3]>) -> Self {
         match colors {
             None => Self::Flat(level(intensity)),
@@ -27,7 +26,6 @@ impl Paint {
 
     /// A triangle with an intensity at every corner, white or with colours there.
     #[inline]
-    #[must_use]
     pub fn gouraud(intensities: [f64; 3], colors: Option<&[[f64; 3]; 3]>) -> Self {
         match colors {
             None => Self::Smooth(intensities.map(|i| [i])),
@@ -37,7 +35,6 @@ impl Paint {
 
     /// The luma at a pixel.
     #[inline]
-    #[must_use]
     pub fn luma(&self, setup: &Setup, x: i32, y: i32) -> u8 {
         match self {
             Self::Flat(v) => *v,
@@ -48,7 +45,6 @@ impl Paint {
 
     /// Red, green and blue at a pixel.
     #[inline]
-    #[must_use]
     pub fn rgb(&self, setup: &Setup, x: i32, y: i32) -> [u8; 3] {
         match self {
             Self::Colored(corners) => setup.interpolate(corners, x, y).map(level),

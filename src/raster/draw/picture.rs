@@ -24,7 +24,6 @@ pub struct Picture<T> {
 
 impl Picture<[u8; 3]> {
     /// Luma at every sample: the same bits as [`luma`] draws.
-    #[must_use]
     pub fn luma(&self) -> Grid<u8> {
         self.tones.map(fixed::luma)
     }
@@ -173,13 +172,11 @@ impl<'a> Shading<'a> {
 
 /// Draws the nearest triangle of every sample, and how deep it is: see [`Picture::keys`]. Where many pictures are drawn, a
 /// [`ZBuffer`] does the same and keeps its memory.
-#[must_use]
 pub fn keys(scene: &Scene, view: &View, set: &ViewSet) -> Picture<()> {
     draw(scene, view, set, |keys| keys.map(|_| ()))
 }
 
 /// Draws the luma of every sample, 0 to 255; the set's background where nothing is.
-#[must_use]
 pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
     draw(scene, view, set, |keys| {
         let shading = Shading::new(scene, view, set);
@@ -192,7 +189,6 @@ pub fn luma(scene: &Scene, view: &View, set: &ViewSet) -> Picture<u8> {
 }
 
 /// Draws red, green and blue of every sample; a grey of the set's background where nothing is.
-#[must_use]
 pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
     draw(scene, view, set, |keys| {
         let shading = Shading::new(scene, view, set);
@@ -205,7 +201,6 @@ pub fn rgb(scene: &Scene, view: &View, set: &ViewSet) -> Picture<[u8; 3]> {
 }
 
 /// Triangle ids of a picture: id + 1, and 0 for the background.
-#[must_use]
 pub fn ids<T>(picture: &Picture<T>) -> Grid<u32> {
     picture
         .keys
@@ -213,13 +208,11 @@ pub fn ids<T>(picture: &Picture<T>) -> Grid<u32> {
 }
 
 /// Depths of a picture in units of 2^-32; `u32::MAX` for the background.
-#[must_use]
 pub fn depths<T>(picture: &Picture<T>) -> Grid<u32> {
     picture.keys.map(SampleKey::depth)
 }
 
 /// Coverage of a picture: 255 where a triangle is, 0 elsewhere.
-#[must_use]
 pub fn coverage<T>(picture: &Picture<T>) -> Grid<u8> {
     picture
         .keys

@@ -41,7 +41,6 @@ impl ScreenVertex {
 
     /// True for [`ScreenVertex::OUTSIDE`].
     #[inline]
-    #[must_use]
     pub fn is_outside(&self) -> bool {
         self.x == i32::MIN
     }
@@ -91,7 +90,6 @@ pub struct Projector {
 
 impl Projector {
     /// The projector of a view of a set. The image counts samples: `width * samples` by `height * samples`.
-    #[must_use]
     pub fn new(view: &View, set: &ViewSet) -> Self {
         let (width, height) = (set.width * set.samples, set.height * set.samples);
         Self {
@@ -105,20 +103,17 @@ impl Projector {
     }
 
     /// The sub-pixel resolution.
-    #[must_use]
     pub fn bits(&self) -> SubpixelBits {
         self.bits
     }
 
     /// All samples of the image.
-    #[must_use]
     pub fn image(&self) -> PixelRect {
         self.image
     }
 
     /// Clip space from world space: `((m0 x + m1 y) + m2 z) + m3` for every row.
     #[inline]
-    #[must_use]
     pub fn clip(&self, p: DVec3) -> ClipVertex {
         let row = |m: &[f64; 4]| ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
         ClipVertex {
@@ -143,7 +138,6 @@ impl Projector {
 
     /// The position on the screen, or [`ScreenVertex::OUTSIDE`].
     #[inline]
-    #[must_use]
     pub fn screen(&self, p: DVec3) -> ScreenVertex {
         match self.unclipped(p) {
             Some((v, x, y)) => self.snap(v, x, y),

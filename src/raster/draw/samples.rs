@@ -4,20 +4,17 @@ use super::{Grid, Scene, picture::luma};
 use crate::view::{View, ViewSet};
 
 /// Luma of every pixel as the sum of its samples: 0 to `255 * samples * samples`.
-#[must_use]
 pub fn luma_sums(scene: &Scene, view: &View, set: &ViewSet) -> Grid<u16> {
     sum_samples(&luma(scene, view, set).tones, set.samples)
 }
 
 /// Luma of every pixel as the sum of its `samples` x `samples` samples, from a picture at sample resolution.
-#[must_use]
 pub fn sum_samples(picture: &Grid<u8>, samples: u32) -> Grid<u16> {
     let [sums] = sum(picture, samples, |v| [v]);
     sums
 }
 
 /// The mean luma of every pixel, rounded to nearest, from the sums of `samples * samples` samples.
-#[must_use]
 pub fn mean_luma(sums: &Grid<u16>, samples: u32) -> Grid<u8> {
     sums.map(|v| mean(v, samples))
 }
@@ -26,7 +23,6 @@ pub fn mean_luma(sums: &Grid<u16>, samples: u32) -> Grid<u8> {
 ///
 /// # Panics
 /// Never: the planes that the sums come from have one size.
-#[must_use]
 pub fn mean_rgb(picture: &Grid<[u8; 3]>, samples: u32) -> Grid<[u8; 3]> {
     let [red, green, blue] = sum(picture, samples, |v| v);
     let mut means = Grid::filled(red.width(), red.height(), [0; 3]);

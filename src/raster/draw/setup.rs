@@ -69,7 +69,6 @@ impl Setup {
     /// Prepares a triangle, or `None` where it draws nothing: no area after snapping, culled, or no pixel centre in
     /// its bounding box.
     #[inline]
-    #[must_use]
     pub fn new(
         corners: [ScreenVertex; 3],
         bits: SubpixelBits,
@@ -131,13 +130,11 @@ impl Setup {
     }
 
     /// The pixels the triangle can touch, inside the image.
-    #[must_use]
     pub fn bounds(&self) -> PixelRect {
         self.bounds
     }
 
     /// For each corner of the set-up triangle, in its written order, which of the given corners it is.
-    #[must_use]
     pub fn order(&self) -> [u8; 3] {
         self.order
     }
@@ -145,7 +142,6 @@ impl Setup {
     /// The values `attributes` (by the given corners) at the centre of a pixel, perspective-correctly:
     /// `sum(e_i a_i / w_i) / sum(e_i / w_i)`, in the set-up order.
     #[inline]
-    #[must_use]
     pub fn interpolate<const N: usize>(
         &self,
         attributes: &[[f64; N]; 3],

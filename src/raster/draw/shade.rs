@@ -25,7 +25,6 @@ pub struct FaceGeometry {
 impl FaceGeometry {
     /// The geometry of a triangle; the same bits for every rotation of its corners.
     #[inline]
-    #[must_use]
     pub fn new(corners: [DVec3; 3]) -> Self {
         let mut first = 0;
         for i in 1..3 {
@@ -62,7 +61,6 @@ enum TowardsLight {
 
 impl Shader {
     /// The shader of a view.
-    #[must_use]
     pub fn new(view: &View) -> Self {
         let towards_light = match (view.light, view.eye) {
             (Light::Headlight, Eye::Point(p)) | (Light::Point(p), _) => TowardsLight::Point(p),
@@ -79,7 +77,6 @@ impl Shader {
     /// The intensity in [0, 1] of a point with a unit normal; 0 where the normal or the direction to the light is
     /// undefined.
     #[inline]
-    #[must_use]
     pub fn intensity(&self, point: DVec3, normal: DVec3) -> f64 {
         let light = match self.towards_light {
             TowardsLight::Point(p) => unit(p - point).unwrap_or(DVec3::ZERO),

@@ -33,7 +33,6 @@ pub struct ZBuffer {
 
 impl ZBuffer {
     /// A buffer that draws on at most `threads` threads. Choose 1 where pictures are drawn in parallel.
-    #[must_use]
     pub fn new(threads: usize) -> Self {
         Self {
             limit: threads.max(1),
@@ -102,13 +101,11 @@ impl ZBuffer {
     }
 
     /// The key of the nearest triangle at every sample of the last picture.
-    #[must_use]
     pub fn keys(&self) -> &Grid<SampleKey> {
         &self.parts[0]
     }
 
     /// Triangles of the last picture that could not be drawn because a coordinate is not finite after the transform.
-    #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped
     }

@@ -54,7 +54,6 @@ pub enum ViewSubset {
 impl ViewSubset {
     /// True where the view with this index in its set belongs to the subset.
     #[inline]
-    #[must_use]
     pub fn contains(self, view: usize) -> bool {
         match self {
             Self::All => true,
@@ -124,7 +123,6 @@ pub struct Model {
 
 impl Model {
     /// The model of a scene whose ids count from 0 without gaps.
-    #[must_use]
     pub fn new(scene: &Scene, set: &ViewSet) -> Self {
         let gouraud = set
             .views

@@ -33,7 +33,6 @@ pub struct DistancePenalty<'a> {
 
 impl<'a> DistancePenalty<'a> {
     /// `original` in the frame of `live`; `None` without weight. O(n log n).
-    #[must_use]
     pub fn new(original: &'a TriangleTree, live: &LiveMesh, weight: f64) -> Option<Self> {
         if weight <= 0.0 {
             return None;
@@ -52,7 +51,6 @@ impl<'a> DistancePenalty<'a> {
 
     /// The price of a unit of volume between the surfaces, in the unit of the image error `sum`; 0 where the mesh lies
     /// in the original.
-    #[must_use]
     pub fn price(&self, sum: f64) -> f64 {
         if self.total > 0.0 {
             self.weight * sum / self.total
@@ -62,20 +60,17 @@ impl<'a> DistancePenalty<'a> {
     }
 
     /// The deviation of the faces that a patch, not yet committed, takes away.
-    #[must_use]
     pub fn before(&self, live: &LiveMesh, patch: &Patch) -> f64 {
         self.sum(patch.removed.iter().map(|f| patch.before(live, f)))
     }
 
     /// The deviation of the faces that a patch, not yet committed, brings.
-    #[must_use]
     pub fn after(&self, live: &LiveMesh, patch: &Patch) -> f64 {
         self.sum(patch.added.iter().map(|f| patch.after(live, f)))
     }
 
     /// A change that adds `cost` to the image error `sum` and `added` to the deviation, on one scale: negative where it is
     /// worth it. In the unit of `sum` times frame units cubed.
-    #[must_use]
     pub fn balance(&self, cost: i64, sum: f64, added: f64) -> f64 {
         cost as f64 * self.total + self.weight * sum * added
     }
@@ -83,7 +78,6 @@ impl<'a> DistancePenalty<'a> {
     /// The move of a star's vertex that brings it near the original with all of its faces: the least squares of the
     /// distances of the faces' samples from the planes that touch the original where it is nearest to them (Gauss and
     /// Newton's step). `None` where it has no faces with an area. O(faces log n).
-    #[must_use]
     pub fn fit(&self, live: &LiveMesh, star: &Star) -> Option<DVec3> {
         let mut squares = Squares::default();
         let mut near = 0;

@@ -46,7 +46,6 @@ pub struct ImageScratch {
 impl ImageDriven {
     /// A run on the mesh that `pictures` show. `rms_limit` ends it before the root mean square of the luma
     /// differences over all views exceeds it.
-    #[must_use]
     pub fn new(pictures: Pictures, placement: MemorylessOptions, rms_limit: Option<f64>) -> Self {
         Self {
             limit: rms_limit.map(|rms| pictures.sum_of_rms(rms)),
@@ -62,7 +61,6 @@ impl ImageDriven {
     /// Charges `price` units of image error for every unit of volume (frame units cubed) that a collapse sweeps, the root
     /// of its memoryless cost: parts that few pictures show would else be given up first, however far from the original
     /// that leads. 0, the published method, unless asked for.
-    #[must_use]
     pub fn with_swept_price(mut self, price: f64) -> Self {
         self.swept_price = price;
         self
@@ -70,7 +68,6 @@ impl ImageDriven {
 
     /// Takes the first keys of an edge, under which it waits to be evaluated in all views, from every n-th view; 1, the
     /// published method, unless asked for. Where that would be fewer than five views, it is all of them.
-    #[must_use]
     pub fn with_view_stride(mut self, every: u32) -> Self {
         let seen = self.views / every.max(1) as usize;
         self.view_stride = if seen < LEAST_SEEN { 1 } else { every };
@@ -106,13 +103,11 @@ impl ImageDriven {
     }
 
     /// The pictures and their distance from the original's.
-    #[must_use]
     pub fn pictures(&self) -> &Pictures {
         &self.pictures
     }
 
     /// The pictures, which show the mesh as the run left it.
-    #[must_use]
     pub fn into_pictures(self) -> Pictures {
         self.pictures
     }

@@ -45,7 +45,6 @@ impl OriginalModel {
     }
 
     /// Its pictures in the driving views.
-    #[must_use]
     pub fn reference(&self) -> &ReferenceImages {
         &self.reference
     }
@@ -70,13 +69,11 @@ impl OriginalModel {
     }
 
     /// The sides of its surface; `None` where it has no triangle with an area.
-    #[must_use]
     pub fn sides(&self) -> Option<&Orientation> {
         self.sides.as_ref()
     }
 
     /// The penalty on distance from its surface for a run on `live`: see [`DistancePenalty::new`].
-    #[must_use]
     pub fn deviation(&self, live: &LiveMesh, weight: f64) -> Option<DistancePenalty<'_>> {
         DistancePenalty::new(self.sides()?.surface(), live, weight)
     }

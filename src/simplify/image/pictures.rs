@@ -40,7 +40,6 @@ pub struct PictureScratch {
 
 impl Pictures {
     /// Draws `live` in the views of the original's pictures (in the same frame), and compares them.
-    #[must_use]
     pub fn new(reference: &ReferenceImages, live: &LiveMesh, engine: EngineName) -> Self {
         let (slots, scene) = Slots::of(live);
         let set = reference.set();
@@ -76,38 +75,32 @@ impl Pictures {
     }
 
     /// Sum over views and pixels of the squared luma differences, in squared levels over `samples^4`.
-    #[must_use]
     pub fn sum(&self) -> u64 {
         self.sum
     }
 
     /// Root mean square of the differences over all views, in levels (equation 2).
-    #[must_use]
     pub fn rms(&self) -> f64 {
         sqrt(self.sum as f64 / self.pixels.max(1) as f64) / f64::from(self.samples)
     }
 
     /// The sum that a root mean square in levels stands for.
-    #[must_use]
     pub fn sum_of_rms(&self, rms: f64) -> f64 {
         let sum = rms * f64::from(self.samples);
         sum * sum * self.pixels as f64
     }
 
     /// Number of views.
-    #[must_use]
     pub fn views(&self) -> usize {
         self.views
     }
 
     /// The engine that keeps the pictures.
-    #[must_use]
     pub fn engine(&self) -> &dyn Unrender {
         &*self.engine
     }
 
     /// Buffers for one thread of several that evaluate at the same time.
-    #[must_use]
     pub fn scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.scratch(),
@@ -116,7 +109,6 @@ impl Pictures {
     }
 
     /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
-    #[must_use]
     pub fn lone_scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.lone_scratch(),
@@ -125,7 +117,6 @@ impl Pictures {
     }
 
     /// Prices a patch, not yet committed: its addition to the error in some views, negative where it makes those better.
-    #[must_use]
     pub fn cost(
         &self,
         live: &LiveMesh,

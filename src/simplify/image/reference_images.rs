@@ -30,13 +30,11 @@ impl ReferenceImages {
     }
 
     /// The views and the format of their pictures.
-    #[must_use]
     pub fn set(&self) -> &ViewSet {
         &self.set
     }
 
     /// The sum of the lumas of the samples in every pixel, for every view.
-    #[must_use]
     pub fn sums(&self) -> &[Grid<u16>] {
         &self.sums
     }

@@ -15,7 +15,6 @@ pub struct Memoryless {
 
 impl Memoryless {
     /// The method on a mesh, with sums around every vertex, so that the engine can estimate costs. O(n).
-    #[must_use]
     pub fn new(live: &LiveMesh, options: MemorylessOptions) -> Self {
         Self {
             options,

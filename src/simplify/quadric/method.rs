@@ -19,13 +19,11 @@ pub struct QuadricMethod {
 
 impl QuadricMethod {
     /// The quadrics of a mesh: the planes of its faces, and planes that stand on its boundary edges. O(n).
-    #[must_use]
     pub fn new(live: &LiveMesh, options: &QuadricOptions) -> Self {
         Self::weighted(live, options, |_| 1.0)
     }
 
     /// As [`QuadricMethod::new`], with the planes of a face and of its boundary edges times `factor` of the face's id.
-    #[must_use]
     pub fn weighted(
         live: &LiveMesh,
         options: &QuadricOptions,
@@ -86,7 +84,6 @@ impl QuadricMethod {
     ///
     /// # Panics
     /// Where there is no such vertex.
-    #[must_use]
     pub fn quadric(&self, vertex: u32) -> &Quadric {
         &self.quadrics[vertex as usize]
     }

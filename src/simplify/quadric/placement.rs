@@ -17,13 +17,11 @@ const WELL_CONDITIONED: f64 = 1e-5;
 
 impl Quadric {
     /// `weight` times the squared distance to the plane through `point` with unit normal `normal`.
-    #[must_use]
     pub fn plane(point: DVec3, normal: DVec3, weight: f64) -> Self {
         Self::uncertain_plane(point, normal, weight, 0.0, 0.0)
     }
 
     /// The expected squared distance to a plane whose normal and point have the given standard deviations.
-    #[must_use]
     pub fn uncertain_plane(
         point: DVec3,
         n: DVec3,
@@ -50,7 +48,6 @@ impl Quadric {
     }
 
     /// This function times a number.
-    #[must_use]
     pub fn scaled(mut self, weight: f64) -> Self {
         for a in &mut self.a.0 {
             *a *= weight;
@@ -61,7 +58,6 @@ impl Quadric {
     }
 
     /// The sum of two.
-    #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         self.a.add(&other.a);
         self.b += other.b;
@@ -70,13 +66,11 @@ impl Quadric {
     }
 
     /// Its value at `v`; rounding below 0 is 0.
-    #[must_use]
     pub fn error(&self, v: DVec3) -> f64 {
         (v.dot(self.a.times(v)) + 2.0 * self.b.dot(v) + self.c).max(0.0)
     }
 
     /// Where it is smallest; `None` where that is ill-conditioned (planes nearly parallel to one line).
-    #[must_use]
     pub fn minimum(&self) -> Option<DVec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a.0;
         let (c0, c1, c2) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
@@ -96,7 +90,6 @@ impl Quadric {
     }
 
     /// The best point of the segment from `u` to `w`; `None` where it is constant along it.
-    #[must_use]
     pub fn minimum_on(&self, [u, w]: [DVec3; 2]) -> Option<DVec3> {
         let d = w - u;
         let curvature = d.dot(self.a.times(d));
@@ -107,7 +100,6 @@ impl Quadric {
 
     /// Where the new vertex of an edge between `u` and `w` belongs: the minimum, else the best point of the edge,
     /// else the best of midpoint and ends (the first on a tie).
-    #[must_use]
     pub fn place(&self, ends: [DVec3; 2]) -> DVec3 {
         let middle = (ends[0] + ends[1]) * 0.5;
         self.minimum()

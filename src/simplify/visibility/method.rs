@@ -51,13 +51,11 @@ impl VisibilityMethod {
     }
 
     /// `Q`: where new vertices lie.
-    #[must_use]
     pub fn placing(&self) -> &QuadricMethod {
         &self.placing
     }
 
     /// `Q_v`: which edge is next.
-    #[must_use]
     pub fn ordering(&self) -> &QuadricMethod {
         &self.ordering
     }

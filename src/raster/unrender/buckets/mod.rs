@@ -39,7 +39,6 @@ const PARTS: usize = 4;
 impl BucketEngine {
     /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
     /// [`luma_sums`](crate::raster::luma_sums)).
-    #[must_use]
     pub fn new(model: Model, set: &ViewSet, reference: &[Grid<u16>]) -> Self {
         let views = set.views.iter().zip(reference).collect();
         let views = parallel::map_vec(views, |(view, reference)| {

@@ -257,7 +257,6 @@ fn each(mut lanes: u64) -> impl Iterator<Item = usize> {
 impl LayerEngine {
     /// Draws the model in every view of the set. `reference` has the luma sums of every view (see
     /// [`luma_sums`](crate::raster::luma_sums)).
-    #[must_use]
     pub fn new(model: Model, set: &ViewSet, reference: &[Grid<u16>]) -> Self {
         let colored = !model.colors.is_empty();
         let count = set.views.len();
