@@ -31,10 +31,12 @@ pub struct Site<'a> {
     pub anchor: Anchor,
     /// The rules.
     pub rules: Rules,
+    /// Accuracy that is asked for: [`Evaluation::Exact`] unless the method's plan has rough evaluations.
+    pub accuracy: Evaluation,
 }
 
 impl<'a> Site<'a> {
-    /// The site of a star.
+    /// The site of a star, for an exact evaluation.
     ///
     /// # Errors
     /// The rule that forbids this collapse wherever the new vertex lies.
@@ -44,6 +46,7 @@ impl<'a> Site<'a> {
             star,
             anchor: legality::anchor(live, star, rules)?,
             rules,
+            accuracy: Evaluation::Exact,
         })
     }
 
@@ -153,32 +156,35 @@ pub trait Estimates: Sync {
 
 /// A method of simplification: it places new vertices and prices collapses.
 ///
-/// Nothing has a default, so that a method around another one cannot forget to forward.
+/// A method may place by another one, but nothing stands between a method and the engine: what is asked of a run besides
+/// (to end at a cost, to measure ranks, to keep a record) the [`Engine`](super::Engine) and its
+/// [`Observer`](super::Observer) do. So there is no wrapper that could forget to forward.
 pub trait Method: Send + Sync {
-    /// Constants of the schedule.
-    fn plan(&self) -> Plan;
-
-    /// The costs that can be had without an evaluation, for methods that keep sums.
-    fn estimates(&self) -> Option<&dyn Estimates>;
-
-    /// Places the new vertex of the site's edge and prices the collapse. Called in parallel, with a scratch per thread;
-    /// `how` is [`Evaluation::Exact`] unless the plan asks for rough evaluations.
+    /// Places the new vertex of the site's edge and prices the collapse. Called in parallel, with a scratch per thread.
     ///
     /// # Errors
     /// The rule that forbids it, from [`Site::admit`]; [`Refusal::Unplaced`]; or a reason of the method's own.
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal>;
-
-    /// Judges the patch that is about to be committed. The proposal's costs were right when it was evaluated.
-    fn review(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review;
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal>;
 
     /// Follows a commit; `live` already has the patch. Old and new corner positions: [`Patch::before`],
     /// [`Patch::after`].
     fn committed(&mut self, live: &LiveMesh, patch: &Patch);
+
+    /// Constants of the schedule.
+    fn plan(&self) -> Plan {
+        Plan::default()
+    }
+
+    /// The costs that can be had without an evaluation, for methods that keep sums.
+    fn estimates(&self) -> Option<&dyn Estimates> {
+        None
+    }
+
+    /// Judges the patch that is about to be committed. The proposal's costs were right when it was evaluated.
+    fn review(&mut self, live: &LiveMesh, patch: &Patch) -> Review {
+        let _ = (live, patch);
+        Review::Commit
+    }
 }
 
 /// Buffers that the evaluations of one thread reuse. They never influence a result.
@@ -193,7 +199,7 @@ impl MethodScratch {
     pub fn alone() -> Self {
         Self {
             alone: true,
-            ..Self::default()
+            buffers: None,
         }
     }
 

@@ -2,10 +2,15 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, Patch};
+use super::{LiveMesh, Patch, Proposal};
 
 /// Watches a run.
 pub trait Observer {
+    /// The collapse that was proposed so is committed next.
+    fn chosen(&mut self, proposal: &Proposal) {
+        let _ = proposal;
+    }
+
     /// A patch was committed; `live` already has it.
     fn committed(&mut self, live: &LiveMesh, patch: &Patch);
 

@@ -34,11 +34,13 @@ pub(super) trait MethodRun: Sync {
     fn schedule(&self) -> Schedule;
 
     /// The error that the method can honour.
-    fn error(&self) -> ErrorLimit;
+    fn error(&self) -> ErrorLimit {
+        ErrorLimit::Nothing
+    }
 
     /// Whether vertices may be moved after the last collapse: the method knows neither pictures nor a guarantee.
     fn only_orders(&self) -> bool {
-        false
+        self.error() == ErrorLimit::Nothing
     }
 
     /// The report where the input already has no more triangles than wanted.

@@ -12,33 +12,17 @@ use crate::{
 /// Evaluates edges of a mesh that stays as it is meanwhile. Outcomes are in the order of the edges that were asked for,
 /// and depend on no other one.
 pub(super) struct Evaluator<'a> {
-    live: &'a LiveMesh,
-    method: &'a dyn Method,
-    star_limit: usize,
-    rules: Rules,
-    how: Evaluation,
+    pub(super) live: &'a LiveMesh,
+    pub(super) method: &'a dyn Method,
+    pub(super) star_limit: usize,
+    pub(super) rules: Rules,
+    pub(super) how: Evaluation,
 }
 
 /// Price of an edge, or the reason why it may not collapse.
-type Outcome = Result<Proposal, Refusal>;
+pub(super) type Outcome = Result<Proposal, Refusal>;
 
-impl<'a> Evaluator<'a> {
-    pub(super) fn new(
-        live: &'a LiveMesh,
-        method: &'a dyn Method,
-        star_limit: usize,
-        rules: Rules,
-        how: Evaluation,
-    ) -> Self {
-        Self {
-            live,
-            method,
-            star_limit,
-            rules,
-            how,
-        }
-    }
-
+impl Evaluator<'_> {
     /// Evaluates an edge on this thread; the star is its star afterwards, where it was gathered.
     pub(super) fn one(&self, id: u32, star: &mut EdgeStar, scratch: &mut MethodScratch) -> Outcome {
         if self.is_crowded(id) {
@@ -47,8 +31,11 @@ impl<'a> Evaluator<'a> {
         if !star.gather(self.live, id) {
             return Err(Refusal::Unplaced);
         }
-        let site = Site::new(self.live, star, self.rules)?;
-        self.method.propose(&site, self.how, scratch)
+        let site = Site {
+            accuracy: self.how,
+            ..Site::new(self.live, star, self.rules)?
+        };
+        self.method.propose(&site, scratch)
     }
 
     /// Evaluates a small batch on all threads: each takes the next edge when it is done with one.

@@ -11,7 +11,7 @@ mod survey;
 use serde::Serialize;
 
 use self::{
-    evaluator::Evaluator,
+    evaluator::{Evaluator, Outcome},
     queue::{Front, Queue},
 };
 pub use self::{
@@ -52,6 +52,8 @@ pub struct Engine {
     rules: Rules,
     schedule: Schedule,
     plan: Plan,
+    /// The largest second key that a collapse may have, where there is one.
+    cost_limit: Option<f64>,
     rank_every: u64,
     queue: Option<Queue>,
     counters: Counters,
@@ -75,6 +77,7 @@ impl Engine {
             rules,
             schedule,
             plan: Plan::default(),
+            cost_limit: None,
             rank_every: 0,
             queue: None,
             counters: Counters::default(),
@@ -87,6 +90,12 @@ impl Engine {
             inherited: Vec::new(),
             touched: Vec::new(),
         }
+    }
+
+    /// Ends before a collapse whose second key is above `limit`, and stays on one thread: for a part of a mesh.
+    pub(super) fn with_cost_limit(mut self, limit: f64) -> Self {
+        self.cost_limit = Some(limit);
+        self
     }
 
     /// Measures the true rank of every `every`-th collapse by evaluating all edges; 0 is off. Changes no result.
@@ -136,6 +145,9 @@ impl Engine {
             return Ok(Stop::TargetReached);
         }
         self.plan = method.plan();
+        if self.cost_limit.is_some() {
+            self.plan.evaluations_per_task = usize::MAX;
+        }
         let total = (start - triangles) as u64;
         let mut queue = match self.queue.take() {
             Some(queue) => queue,
@@ -164,9 +176,12 @@ impl Engine {
                     }
                     let position = proposal.position.position();
                     self.star.patch(&self.live, position, &mut self.patch);
-                    match method.review(&self.live, &self.patch, &proposal) {
-                        Review::Commit => {
+                    let cost = proposal.secondary;
+                    let affordable = self.cost_limit.is_none_or(|limit| cost <= limit);
+                    match method.review(&self.live, &self.patch) {
+                        Review::Commit if affordable => {
                             self.measure_rank(method, id);
+                            observer.chosen(&proposal);
                             self.commit(method, &mut queue, observer);
                         }
                         Review::Outdated => {
@@ -176,7 +191,7 @@ impl Engine {
                                 self.note(&mut queue, id, refused, Evaluation::Exact);
                             }
                         }
-                        Review::LimitReached => break Stop::ErrorLimit,
+                        Review::Commit | Review::LimitReached => break Stop::ErrorLimit,
                     }
                 }
             }
@@ -293,23 +308,31 @@ impl Engine {
     /// Evaluates edges again and re-keys them.
     fn refresh(&mut self, method: &dyn Method, queue: &mut Queue, ids: &[u32], how: Evaluation) {
         self.count(ids.len(), how);
-        let (per_task, limit) = (self.plan.evaluations_per_task, self.plan.star_limit);
+        let per_task = self.plan.evaluations_per_task;
         let shared = ids.len() >= self.plan.shared_batch && parallel::threads() > 1;
         if !shared && ids.len() <= per_task {
             for &id in ids {
-                let evaluator = Evaluator::new(&self.live, method, limit, self.rules, how);
+                let evaluator = Evaluator {
+                    live: &self.live,
+                    method,
+                    star_limit: self.plan.star_limit,
+                    rules: self.rules,
+                    how,
+                };
                 let outcome = evaluator.one(id, &mut self.star, &mut self.scratch);
                 self.gathered = Some(id);
                 self.note(queue, id, outcome, how);
             }
             return;
         }
-        let evaluator = Evaluator::new(&self.live, method, limit, self.rules, how);
+        let mut pool = std::mem::take(&mut self.pool);
+        let evaluator = self.evaluator(method, how);
         let outcomes = if shared {
-            evaluator.shared(ids, &mut self.pool)
+            evaluator.shared(ids, &mut pool)
         } else {
             evaluator.all(ids, per_task)
         };
+        self.pool = pool;
         for (&id, outcome) in ids.iter().zip(outcomes) {
             self.note(queue, id, outcome, how);
         }
@@ -322,13 +345,7 @@ impl Engine {
         }
     }
 
-    fn note(
-        &mut self,
-        queue: &mut Queue,
-        id: u32,
-        outcome: std::result::Result<Proposal, Refusal>,
-        how: Evaluation,
-    ) {
+    fn note(&mut self, queue: &mut Queue, id: u32, outcome: Outcome, how: Evaluation) {
         if let Err(refusal) = outcome {
             self.counters.refusals.add(refusal);
         }

@@ -77,8 +77,18 @@ impl Engine {
             .collect()
     }
 
-    fn evaluator<'a>(&'a self, method: &'a dyn Method, how: Evaluation) -> Evaluator<'a> {
-        Evaluator::new(&self.live, method, self.plan.star_limit, self.rules, how)
+    pub(super) fn evaluator<'a>(
+        &'a self,
+        method: &'a dyn Method,
+        how: Evaluation,
+    ) -> Evaluator<'a> {
+        Evaluator {
+            live: &self.live,
+            method,
+            star_limit: self.plan.star_limit,
+            rules: self.rules,
+            how,
+        }
     }
 
     /// Counts by which rule every edge that is left is refused.

@@ -5,10 +5,7 @@ use glam::DVec3;
 use super::{TileCollapse, TileOptions, Tileable, cut::Cut};
 use crate::{
     Progress, Result,
-    collapse::{
-        Counters, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, NONE, Observer,
-        Patch, Plan, Proposal, Refusal, Review, Site,
-    },
+    collapse::{Counters, Engine, LiveMesh, NONE, Observer, Patch, Proposal},
     num::Each,
 };
 
@@ -48,28 +45,21 @@ pub(super) fn collapse_tile(
         .map(|&t| whole.faces[t as usize].each(local))
         .collect();
     let live = LiveMesh::part(whole, positions, corners, frozen);
-    let mut method = Limited {
-        own: method.part(&live, &vertices),
-        limit,
-        costs: Vec::new(),
+    let mut method = method.part(&live, &vertices);
+    let mut collapses = Collapses {
+        all: Vec::new(),
+        cost: f64::NEG_INFINITY,
     };
-    let mut collapses = Collapses(Vec::new());
-    let mut engine = Engine::new(live, options.rules, options.schedule);
-    engine.run(&mut method, 0, &mut collapses, &Interruption(progress))?;
+    let engine = Engine::new(live, options.rules, options.schedule);
+    let mut engine = engine.with_cost_limit(limit);
+    engine.run(&mut *method, 0, &mut collapses, &Interruption(progress))?;
     let (live, counters) = engine.into_parts();
-    let mut largest = f64::NEG_INFINITY;
-    let collapses = collapses.0.into_iter().zip(method.costs);
-    let collapses = collapses
-        .map(|((keep, gone, to), cost)| {
-            largest = if cost > largest { cost } else { largest };
-            TileCollapse {
-                keep: vertices[keep as usize],
-                gone: vertices[gone as usize],
-                to,
-                cost: largest,
-            }
-        })
-        .collect();
+    let collapses = collapses.all.into_iter().map(|c| TileCollapse {
+        keep: vertices[c.keep as usize],
+        gone: vertices[c.gone as usize],
+        ..c
+    });
+    let collapses = collapses.collect();
     let corners = live.faces.iter().map(|corners| {
         corners.each(|v| match v {
             NONE => NONE,
@@ -83,7 +73,7 @@ pub(super) fn collapse_tile(
         positions: live.positions,
         vertices,
         faces,
-        method: method.own,
+        method,
         counters,
     })
 }
@@ -99,60 +89,28 @@ impl Progress for Interruption<'_> {
     }
 }
 
-/// The ends and places of all collapses.
-struct Collapses(Vec<(u32, u32, DVec3)>);
+/// The collapses of a tile, in its own ids.
+struct Collapses {
+    all: Vec<TileCollapse>,
+    /// The largest cost so far.
+    cost: f64,
+}
 
 impl Observer for Collapses {
+    fn chosen(&mut self, proposal: &Proposal) {
+        if proposal.secondary > self.cost {
+            self.cost = proposal.secondary;
+        }
+    }
+
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
         if let (Some(moved), Some(gone)) = (patch.moved, patch.gone) {
-            self.0.push((moved.vertex, gone, moved.to));
+            self.all.push(TileCollapse {
+                keep: moved.vertex,
+                gone,
+                to: moved.to,
+                cost: self.cost,
+            });
         }
-    }
-}
-
-/// A method that ends before a cost, and keeps all costs up to there.
-struct Limited {
-    own: Box<dyn Tileable>,
-    limit: f64,
-    costs: Vec<f64>,
-}
-
-impl Method for Limited {
-    /// A tile has one task.
-    fn plan(&self) -> Plan {
-        Plan {
-            evaluations_per_task: usize::MAX,
-            ..self.own.plan()
-        }
-    }
-
-    fn estimates(&self) -> Option<&dyn Estimates> {
-        self.own.estimates()
-    }
-
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> std::result::Result<Proposal, Refusal> {
-        self.own.propose(site, how, scratch)
-    }
-
-    fn review(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review {
-        let own = self.own.review(live, patch, proposal);
-        if own != Review::Commit {
-            return own;
-        }
-        let within = proposal.secondary <= self.limit;
-        if !within {
-            return Review::LimitReached;
-        }
-        self.costs.push(proposal.secondary);
-        Review::Commit
-    }
-
-    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
-        self.own.committed(live, patch);
     }
 }

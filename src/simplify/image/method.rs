@@ -6,8 +6,7 @@ use super::{
 };
 use crate::{
     collapse::{
-        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
-        Review, Site,
+        Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal, Review, Site,
     },
     num::math::sqrt,
     raster::ViewSubset,
@@ -123,16 +122,7 @@ impl Method for ImageDriven {
         }
     }
 
-    fn estimates(&self) -> Option<&dyn Estimates> {
-        None
-    }
-
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let scratch = scratch.of(|alone| ImageScratch {
             pictures: if alone {
                 self.pictures.lone_scratch()
@@ -141,14 +131,14 @@ impl Method for ImageDriven {
             },
             patch: Patch::default(),
         });
-        let views = match how {
+        let views = match site.accuracy {
             Evaluation::Exact => ViewSubset::All,
             Evaluation::Rough => ViewSubset::EveryNth(self.view_stride),
         };
         self.price(site, views, scratch)
     }
 
-    fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
+    fn review(&mut self, live: &LiveMesh, patch: &Patch) -> Review {
         let Some(limit) = self.limit else {
             return Review::Commit;
         };

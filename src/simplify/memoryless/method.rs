@@ -2,8 +2,7 @@
 
 use super::{MemorylessOptions, Objective, vertex_sums::Fans};
 use crate::collapse::{
-    Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal,
-    Refusal, Review, Site, Tileable,
+    Admitted, Estimates, LiveMesh, Method, MethodScratch, Patch, Proposal, Refusal, Site, Tileable,
 };
 
 /// The memoryless method. By default it keeps no sums: every edge whose cost is wanted is evaluated in full.
@@ -69,25 +68,12 @@ fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Ref
 }
 
 impl Method for Memoryless {
-    fn plan(&self) -> Plan {
-        Plan::default()
-    }
-
     fn estimates(&self) -> Option<&dyn Estimates> {
         Some(self)
     }
 
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        _: Evaluation,
-        _: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, _: &mut MethodScratch) -> Result<Proposal, Refusal> {
         propose(site, &self.options)
-    }
-
-    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
-        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

@@ -4,12 +4,7 @@ use super::{Memoryless, MemorylessOptions};
 use crate::{
     Result,
     collapse::{Rules, Schedule},
-    simplify::{
-        Outcome, Report,
-        methods::{ErrorLimit, MethodRun},
-        options::require_within,
-        run::Run,
-    },
+    simplify::{Outcome, Report, methods::MethodRun, options::require_within, run::Run},
 };
 
 /// The rules for methods that only measure distances. A guard against folds in every step cost 3 to 4 % of flat RMS on
@@ -44,14 +39,6 @@ impl MethodRun for MemorylessOptions {
 
     fn schedule(&self) -> Schedule {
         Schedule::Eager
-    }
-
-    fn error(&self) -> ErrorLimit {
-        ErrorLimit::Nothing
-    }
-
-    fn only_orders(&self) -> bool {
-        true
     }
 
     fn run(&self, run: Run<'_>) -> Result<Outcome> {

@@ -5,8 +5,7 @@ use std::any::Any;
 use super::{Quadric, QuadricOptions, Uncertainty, Weighting};
 use crate::{
     collapse::{
-        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
-        Review, Site, Tileable,
+        Estimates, LiveMesh, Method, MethodScratch, Patch, Proposal, Refusal, Site, Tileable,
     },
     num::math,
 };
@@ -103,20 +102,11 @@ fn mean_edge(live: &LiveMesh) -> f64 {
 }
 
 impl Method for QuadricMethod {
-    fn plan(&self) -> Plan {
-        Plan::default()
-    }
-
     fn estimates(&self) -> Option<&dyn Estimates> {
         Some(self)
     }
 
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        _: Evaluation,
-        _: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, _: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let [u, w] = site.star.ends;
         let sum = self.quadric(u).plus(self.quadric(w));
         let wanted = site.fixed().unwrap_or_else(|| sum.place(site.star.points));
@@ -126,10 +116,6 @@ impl Method for QuadricMethod {
             primary: 0,
             secondary: sum.error(position.position()),
         })
-    }
-
-    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
-        Review::Commit
     }
 
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {

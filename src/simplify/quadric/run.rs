@@ -5,10 +5,7 @@ use crate::{
     Result,
     collapse::{Rules, Schedule},
     simplify::{
-        Outcome, Report,
-        memoryless::distance_rules,
-        methods::{ErrorLimit, MethodRun},
-        options::require_within,
+        Outcome, Report, memoryless::distance_rules, methods::MethodRun, options::require_within,
         run::Run,
     },
 };
@@ -29,14 +26,6 @@ impl MethodRun for QuadricOptions {
 
     fn schedule(&self) -> Schedule {
         Schedule::Semi
-    }
-
-    fn error(&self) -> ErrorLimit {
-        ErrorLimit::Nothing
-    }
-
-    fn only_orders(&self) -> bool {
-        true
     }
 
     fn run(&self, run: Run<'_>) -> Result<Outcome> {

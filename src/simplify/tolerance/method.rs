@@ -13,8 +13,8 @@ use crate::{
         tolerance::{Neighborhood, OldFace, Quadratic, Volume},
     },
     collapse::{
-        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Reason,
-        Refusal, Review, Site, legality,
+        Estimates, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Reason, Refusal, Review,
+        Site, legality,
     },
     num::{Each, math},
 };
@@ -242,12 +242,7 @@ impl Method for ToleranceMethod {
         self.memoryless.estimates()
     }
 
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        _: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let scratch = scratch.of(|_| Scratch::default());
         let objective = Objective::of(site.star, &self.options.placement);
         if let Some(coverage) = &self.coverage {
@@ -299,7 +294,7 @@ impl Method for ToleranceMethod {
     }
 
     /// Another collapse may have changed a witness outside the star: the test is made again, and finds the witnesses.
-    fn review(&mut self, live: &LiveMesh, patch: &Patch, _: &Proposal) -> Review {
+    fn review(&mut self, live: &LiveMesh, patch: &Patch) -> Review {
         let Some(coverage) = &self.coverage else {
             return Review::Commit;
         };

@@ -15,8 +15,8 @@ use crate::{
         AngleLimit, Answer, Collapse, Correspondence, Face, Layout, PieceScratch,
     },
     collapse::{
-        Admitted, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan,
-        Proposal, Reason, Refusal, Review, Site,
+        Admitted, Estimates, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan, Proposal,
+        Reason, Refusal, Site,
     },
     num::Each,
 };
@@ -205,12 +205,7 @@ impl Method for ViewBounded {
         self.placing.estimates()
     }
 
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        _: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let buffers = scratch.of(|_| Buffers::default());
         let wanted = memoryless::propose(site, &self.placement)?;
         let mut refusal = match self.bounded(site, wanted.position, buffers) {
@@ -239,10 +234,6 @@ impl Method for ViewBounded {
             }
         }
         Err(refusal)
-    }
-
-    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
-        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

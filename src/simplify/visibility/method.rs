@@ -6,8 +6,7 @@ use super::{super::quadric::QuadricMethod, VisibilityOptions};
 use crate::{
     Error, Result,
     collapse::{
-        Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal,
-        Review, Site, Tileable,
+        Estimates, LiveMesh, Method, MethodScratch, Patch, Proposal, Refusal, Site, Tileable,
     },
 };
 
@@ -62,31 +61,18 @@ impl VisibilityMethod {
 }
 
 impl Method for VisibilityMethod {
-    fn plan(&self) -> Plan {
-        Plan::default()
-    }
-
     fn estimates(&self) -> Option<&dyn Estimates> {
         Some(self)
     }
 
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
-        let placed = self.placing.propose(site, how, scratch)?;
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
+        let placed = self.placing.propose(site, scratch)?;
         let [u, w] = site.star.ends;
         let seen = self.ordering.quadric(u).plus(self.ordering.quadric(w));
         Ok(Proposal {
             secondary: seen.error(placed.position.position()) + self.tie_weight * placed.secondary,
             ..placed
         })
-    }
-
-    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
-        Review::Commit
     }
 
     fn committed(&mut self, live: &LiveMesh, patch: &Patch) {

@@ -7,7 +7,7 @@ use crate::{
     mesh::Mesh,
     simplify::{
         MethodOptions, Options, Outcome, Report,
-        methods::{ErrorLimit, MethodRun},
+        methods::MethodRun,
         options::require_within,
         run::{Run, start},
     },
@@ -27,14 +27,6 @@ impl MethodRun for VisibilityOptions {
 
     fn schedule(&self) -> Schedule {
         self.quadric.schedule()
-    }
-
-    fn error(&self) -> ErrorLimit {
-        ErrorLimit::Nothing
-    }
-
-    fn only_orders(&self) -> bool {
-        true
     }
 
     fn run(&self, run: Run<'_>) -> Result<Outcome> {

@@ -11,8 +11,8 @@ use lodmark::{
     Silent,
     bound::view_cell::ViewCell,
     collapse::{
-        EdgeStar, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan,
-        Proposal, Refusal, Review, Rules, Schedule, Site, StarFace, fold_amount,
+        EdgeStar, Engine, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal, Rules,
+        Schedule, Site, StarFace, fold_amount,
     },
     mesh::{Materials, Mesh, MeshParts, canonical},
     simplify::{
@@ -247,22 +247,9 @@ impl Method for Modest {
         }
     }
 
-    fn estimates(&self) -> Option<&dyn Estimates> {
-        None
-    }
-
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
+    fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
         self.0.fetch_max(site.star.faces.len(), Ordering::Relaxed);
-        Dice(3).propose(site, how, scratch)
-    }
-
-    fn review(&mut self, _: &LiveMesh, _: &Patch, _: &Proposal) -> Review {
-        Review::Commit
+        Dice(3).propose(site, scratch)
     }
 
     fn committed(&mut self, _: &LiveMesh, _: &Patch) {}

@@ -3,10 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     Silent,
-    collapse::{
-        EdgeStar, Engine, Estimates, Evaluation, LiveMesh, Method, MethodScratch, Patch, Plan,
-        Proposal, Refusal, Review, Rules, Schedule, Site, Topology,
-    },
+    collapse::{EdgeStar, Engine, LiveMesh, Patch, Proposal, Rules, Schedule, Site, Topology},
     mesh::{Mesh, canonical, generate},
     num::math,
     raster,
@@ -23,48 +20,9 @@ use lodmark::{
 
 use crate::support::{same_on_all_threads, scene_of};
 
-/// The method, remembering what it was about to commit.
-struct Watched {
-    inner: ImageDriven,
-    last: Option<Proposal>,
-}
-
-impl Method for Watched {
-    fn plan(&self) -> Plan {
-        self.inner.plan()
-    }
-
-    fn estimates(&self) -> Option<&dyn Estimates> {
-        self.inner.estimates()
-    }
-
-    fn propose(
-        &self,
-        site: &Site<'_>,
-        how: Evaluation,
-        scratch: &mut MethodScratch,
-    ) -> Result<Proposal, Refusal> {
-        self.inner.propose(site, how, scratch)
-    }
-
-    fn review(&mut self, live: &LiveMesh, patch: &Patch, proposal: &Proposal) -> Review {
-        self.last = Some(*proposal);
-        self.inner.review(live, patch, proposal)
-    }
-
-    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
-        self.inner.committed(live, patch);
-    }
-}
-
-fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> Watched {
-    let reference = reference(original, set);
-    let pictures = Pictures::new(&reference, live, EngineName::Buckets);
-    let inner = ImageDriven::new(pictures, MemorylessOptions::default(), None);
-    Watched {
-        inner: inner.with_swept_price(price),
-        last: None,
-    }
+fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> ImageDriven {
+    let pictures = Pictures::new(&reference(original, set), live, EngineName::Buckets);
+    ImageDriven::new(pictures, MemorylessOptions::default(), None).with_swept_price(price)
 }
 
 /// The pictures of `original`, in units of the frame of `set`.
@@ -246,7 +204,7 @@ fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
                     .enter_frame(frame)
                     .in_frame_units()
                     .clone();
-                let (scene, pictures) = (scene_of(&now), method.inner.pictures());
+                let (scene, pictures) = (scene_of(&now), method.pictures());
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
                     assert!(
@@ -330,11 +288,10 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 engine
                     .run(&mut method, triangles - 1, &mut taken, &Silent)
                     .expect("not interrupted");
-                let proposal = method.last.expect("a collapse");
-                assert_eq!(proposal.primary, cheapest.0, "{mesh_name}, {view_name}");
-                assert_eq!(taken.0, Some(cheapest.3), "{mesh_name}, {view_name}");
+                assert_eq!(taken.price, cheapest.0, "{mesh_name}, {view_name}");
+                assert_eq!(taken.edge, Some(cheapest.3), "{mesh_name}, {view_name}");
                 assert_eq!(
-                    method.inner.pictures().sum() as i64 - before,
+                    method.pictures().sum() as i64 - before,
                     cost,
                     "{mesh_name}, {view_name}"
                 );
@@ -344,17 +301,24 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
     }
 }
 
-/// The edge of the first collapse.
+/// The edge of the first collapse, and the price of the last.
 #[derive(Default)]
-struct Taken(Option<[u32; 2]>);
+struct Taken {
+    edge: Option<[u32; 2]>,
+    price: i64,
+}
 
 impl lodmark::collapse::Observer for Taken {
+    fn chosen(&mut self, proposal: &Proposal) {
+        self.price = proposal.primary;
+    }
+
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
         let edge = [
             patch.moved.expect("a collapse moves").vertex,
             patch.gone.expect("a collapse removes"),
         ];
-        self.0.get_or_insert(edge);
+        self.edge.get_or_insert(edge);
     }
 }
 

@@ -7,9 +7,7 @@
 use glam::DVec3;
 use lodmark::{
     bound::tolerance::Source,
-    collapse::{
-        Changes, EdgeStar, History, LiveMesh, Method, Patch, Proposal, Replay, Review, Rules, Site,
-    },
+    collapse::{Changes, EdgeStar, History, LiveMesh, Method, Patch, Replay, Review, Rules, Site},
     mesh::{Mesh, canonical, content_sha256, generate},
     num::{Frame, Precision},
     simplify::{
@@ -112,8 +110,7 @@ proptest! {
                     most = most.max(after.iter().map(|&t| distance(p, t)).fold(f64::INFINITY, f64::min));
                 }
             }
-            let proposal = Proposal { position, primary: 0, secondary: 0.0 };
-            let confirmed = method.review(&live, &patch, &proposal) == Review::Commit;
+            let confirmed = method.review(&live, &patch) == Review::Commit;
             prop_assert!(!confirmed || most <= bound, "{most} of {bound}");
             if confirmed {
                 live.apply(&patch, &mut changes);

@@ -3,9 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     Error, Silent,
-    collapse::{
-        EdgeStar, Engine, Evaluation, LiveMesh, Method, MethodScratch, Rules, Schedule, Site,
-    },
+    collapse::{EdgeStar, Engine, LiveMesh, Method, MethodScratch, Rules, Schedule, Site},
     mesh::{Mesh, canonical, generate},
     simplify::{
         MethodOptions, Options, Replay, Target,
@@ -86,7 +84,7 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
         let star: EdgeStar = star(&live, 0, 1);
         let site = Site::new(&live, &star, Rules::default()).expect("legal");
         let mut scratch = MethodScratch::default();
-        let proposal = method.propose(&site, Evaluation::Exact, &mut scratch);
+        let proposal = method.propose(&site, &mut scratch);
         let proposal = proposal.expect("legal");
         let v = [
             -0.026_137_273_713_825_21,
