@@ -24,5 +24,5 @@ pub use pixel_rect::PixelRect;
 pub use sample_key::SampleKey;
 pub use scene::Scene;
 pub use unrender::{
-    Added, BucketEngine, LayerEngine, Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset,
+    BucketEngine, LayerEngine, Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset,
 };

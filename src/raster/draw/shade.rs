@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Normal and centroid of a triangle: the input of flat shading, the same for every view.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceGeometry {
     /// Twice the area times the unit normal.
     pub area_normal: DVec3,

@@ -5,41 +5,18 @@
 
 mod buckets;
 mod layers;
+mod scene_edit;
 
 pub use buckets::BucketEngine;
 pub use layers::LayerEngine;
+pub use scene_edit::SceneEdit;
 
 use std::{any::Any, fmt};
 
 use glam::DVec3;
 
-use super::{FaceGeometry, Grid, SampleKey, Scene};
+use super::{Grid, SampleKey, Scene};
 use crate::view::{Interpolation, ViewSet};
-
-/// A triangle that a change puts into the pictures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Added {
-    /// Its id; also in [`SceneEdit::removed`] where a triangle changes its shape or its shading.
-    pub id: u32,
-    /// Its vertices.
-    pub corners: [u32; 3],
-    /// Red, green and blue at its corners; ignored where the model is white.
-    pub colors: [[f64; 3]; 3],
-}
-
-/// A change of the mesh, as the pictures see it: an edge collapse, a move, a flip, a removal. Reused as a buffer.
-#[derive(Clone, Debug, Default)]
-pub struct SceneEdit {
-    /// Ids of the triangles that disappear or change.
-    pub removed: Vec<u32>,
-    /// The triangles that appear or have changed.
-    pub added: Vec<Added>,
-    /// New positions; every triangle at such a vertex is in `removed`.
-    pub moved: Vec<(u32, DVec3)>,
-    /// Where a view is Gouraud shaded: unit normals of all vertices that move (the light falls on them from elsewhere,
-    /// even where their normals stay as they are) or whose normals change; every triangle at them is in `removed`.
-    pub normals: Vec<(u32, DVec3)>,
-}
 
 /// The views that an evaluation takes into account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -151,8 +128,8 @@ impl Model {
                 self.normals[v as usize] = n;
             }
         }
-        for face in &edit.added {
-            self.corners[face.id as usize] = face.corners;
+        for face in edit.after() {
+            self.corners[face.id as usize] = face.corners.map(|c| c.vertex);
             if let Some(colors) = self.colors.get_mut(face.id as usize) {
                 *colors = face.colors;
             }
@@ -166,16 +143,5 @@ impl Model {
             .iter()
             .find(|m| m.0 == vertex)
             .map_or_else(|| self.positions[vertex as usize], |m| m.1)
-    }
-
-    /// The geometry of an added triangle.
-    #[inline]
-    pub(super) fn geometry_after(
-        &self,
-        edit: &SceneEdit,
-        face: &Added,
-    ) -> (FaceGeometry, [DVec3; 3]) {
-        let positions = face.corners.map(|v| self.position_after(edit, v));
-        (FaceGeometry::new(positions), positions)
     }
 }

@@ -21,6 +21,9 @@ use crate::{
 pub struct Pictures {
     engine: Box<dyn Unrender>,
     slots: Slots,
+    /// A view is flat shaded.
+    flat: bool,
+    /// A view is Gouraud shaded.
     gouraud: bool,
     sum: u64,
     /// Number of views.
@@ -43,7 +46,7 @@ impl Pictures {
     pub fn new(reference: &ReferenceImages, live: &LiveMesh, engine: EngineName) -> Self {
         let (slots, scene) = Slots::of(live);
         let set = reference.set();
-        let mut views = set.views.iter();
+        let shaded = |by| set.views.iter().any(|v| v.shading.interpolation == by);
         let (model, sums) = (Model::new(&scene, set), reference.sums());
         let engine: Box<dyn Unrender> = match engine {
             EngineName::Layers => Box::new(LayerEngine::new(model, set, sums)),
@@ -52,7 +55,8 @@ impl Pictures {
         let mut pictures = Self {
             engine,
             slots,
-            gouraud: views.any(|v| v.shading.interpolation == Interpolation::Gouraud),
+            flat: shaded(Interpolation::Flat),
+            gouraud: shaded(Interpolation::Gouraud),
             sum: 0,
             views: set.views.len(),
             pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
@@ -104,7 +108,7 @@ impl Pictures {
     pub fn scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.scratch(),
-            translator: Translator::default(),
+            translator: Translator::new(&self.slots, self.flat),
         }
     }
 
@@ -112,7 +116,7 @@ impl Pictures {
     pub fn lone_scratch(&self) -> PictureScratch {
         PictureScratch {
             engine: self.engine.lone_scratch(),
-            translator: Translator::default(),
+            translator: Translator::new(&self.slots, self.flat),
         }
     }
 

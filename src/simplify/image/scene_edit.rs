@@ -10,7 +10,7 @@ use crate::{
     collapse::{LiveMesh, NONE, Patch},
     mesh::{Channel, ChannelKind},
     num::{Each, math::unit},
-    raster::{Added, FaceGeometry, Scene, SceneEdit},
+    raster::{FaceGeometry, Scene, SceneEdit},
 };
 
 /// Numbers of the mesh's triangles and vertices in the pictures.
@@ -83,11 +83,23 @@ impl Slots {
 struct ShadedFace {
     id: u32,
     corners: [u32; 3],
+    points: [DVec3; 3],
     area_normal: DVec3,
 }
 
+impl ShadedFace {
+    fn new(id: u32, corners: [u32; 3], points: [DVec3; 3]) -> Self {
+        Self {
+            id,
+            corners,
+            points,
+            area_normal: FaceGeometry::new(points).area_normal,
+        }
+    }
+}
+
 /// Translates patches of the mesh to edits of the pictures; the buffers are reused.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Translator {
     /// The last patch, for an un-rendering engine.
     pub(super) edit: SceneEdit,
@@ -96,78 +108,75 @@ pub(super) struct Translator {
 }
 
 impl Translator {
-    /// Translates `patch`; the same before and after `live` has applied it. `gouraud` adds the changed normals and the
-    /// triangles that they touch.
-    pub(super) fn fill(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch, gouraud: bool) {
-        self.edit.removed.clear();
-        self.edit.added.clear();
-        self.edit.moved.clear();
-        self.edit.normals.clear();
-        let triangle = |id: u32| slots.triangles[id as usize];
-        self.edit
-            .removed
-            .extend(patch.removed.iter().map(|face| triangle(face.id)));
-        self.edit.added.extend(patch.added.iter().map(|face| Added {
-            id: triangle(face.id),
-            corners: face.corners.each(|v| slots.vertices[v as usize]),
-            colors: slots.colors(live, &patch.rows, face.wedges),
-        }));
-        self.edit.moved.extend(
-            patch
-                .moved
-                .iter()
-                .map(|m| (slots.vertices[m.vertex as usize], m.to)),
-        );
-        if gouraud {
-            self.shade(slots, live, patch);
+    /// For pictures with these numbers; `flat` where one of them needs the geometry of faces.
+    pub(super) fn new(slots: &Slots, flat: bool) -> Self {
+        let triangles = slots.triangles.iter().filter(|&&slot| slot != NONE).count();
+        Self {
+            edit: SceneEdit::new(triangles, flat || slots.color.is_some()),
+            vertices: Vec::new(),
+            faces: Vec::new(),
         }
     }
 
-    fn shade(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch) {
-        // (1) The vertices whose normals can change: all of the removed faces, but for the one that is gone.
+    /// Translates `patch`; the same before and after `live` has applied it. `gouraud` adds the changed normals and the
+    /// triangles that they touch.
+    pub(super) fn fill(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch, gouraud: bool) {
+        self.edit.clear();
+        if let Some(m) = patch.moved {
+            self.edit
+                .moved
+                .push((slots.vertices[m.vertex as usize], m.to));
+        }
+        if gouraud {
+            self.find_shaded(slots, live, patch);
+        }
+        let numbers = |corners: [u32; 3]| corners.each(|v| slots.vertices[v as usize]);
+        for face in &patch.added {
+            let (id, corners) = (slots.triangles[face.id as usize], numbers(face.corners));
+            let colors = slots.colors(live, &patch.rows, face.wedges);
+            let points = patch.after(live, face);
+            self.edit.add(id, corners, points, colors);
+        }
+        if gouraud {
+            // Other faces at these vertices look different too.
+            let removed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
+            for face in self.faces.iter().filter(|f| !removed(f.id)) {
+                let (id, corners) = (slots.triangles[face.id as usize], numbers(face.corners));
+                let colors = slots.colors(live, &patch.rows, live.wedges(face.id));
+                self.edit.restyle(id, corners, face.points, colors);
+            }
+        }
+        for face in &patch.removed {
+            let id = slots.triangles[face.id as usize];
+            self.edit.remove(id, numbers(face.corners));
+        }
+    }
+
+    /// Finds the vertices whose normals may change with their new normals, and all faces at them after the change.
+    fn find_shaded(&mut self, slots: &Slots, live: &LiveMesh, patch: &Patch) {
+        // (1) All vertices of the removed faces, but for the one that is gone.
         self.vertices.clear();
         let corners = patch.removed.iter().flat_map(|face| face.corners);
         self.vertices
             .extend(corners.filter(|&v| Some(v) != patch.gone));
         self.vertices.sort_unstable();
         self.vertices.dedup();
-        // (2) All faces at them after the change, by ascending id.
+        // (2) All faces at them, by ascending id.
         self.faces.clear();
         let removed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
-        for face in &patch.added {
-            let points = patch.after(live, face);
-            self.faces.push(ShadedFace {
-                id: face.id,
-                corners: face.corners,
-                area_normal: FaceGeometry::new(points).area_normal,
-            });
-        }
-        let own = self.faces.len();
+        let added = patch.added.iter();
+        let added = added.map(|f| ShadedFace::new(f.id, f.corners, patch.after(live, f)));
+        self.faces.extend(added);
         for &v in &self.vertices {
             for id in live.triangles_at(v).filter(|&id| !removed(id)) {
                 if let (Some(corners), Some(points)) = (live.triangle(id), live.points(id)) {
-                    self.faces.push(ShadedFace {
-                        id,
-                        corners,
-                        area_normal: FaceGeometry::new(points).area_normal,
-                    });
+                    self.faces.push(ShadedFace::new(id, corners, points));
                 }
             }
         }
-        // (3) Those that are not part of the patch look different too.
-        self.faces[own..].sort_unstable_by_key(|f| f.id);
-        self.faces.dedup_by_key(|f| f.id);
-        for face in &self.faces[own..] {
-            let id = slots.triangles[face.id as usize];
-            self.edit.removed.push(id);
-            self.edit.added.push(Added {
-                id,
-                corners: face.corners.each(|v| slots.vertices[v as usize]),
-                colors: slots.colors(live, &patch.rows, live.wedges(face.id)),
-            });
-        }
-        // (4) The new normals, summed by ascending id.
         self.faces.sort_unstable_by_key(|f| f.id);
+        self.faces.dedup_by_key(|f| f.id);
+        // (3) The new normals, summed by ascending id.
         for &v in &self.vertices {
             let at = self.faces.iter().filter(|f| f.corners.contains(&v));
             let sum = at.fold(DVec3::ZERO, |sum, f| sum + f.area_normal);
@@ -206,7 +215,7 @@ mod tests {
             let mut patch = Patch::default();
             site.patch(position, &mut patch);
             let (slots, _) = Slots::of(&live);
-            let mut change = Translator::default();
+            let mut change = Translator::new(&slots, true);
             change.fill(&slots, &live, &patch, true);
             let before = change.edit.normals.clone();
             live.apply(&patch, &mut Changes::default());

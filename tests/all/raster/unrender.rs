@@ -4,7 +4,7 @@ use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
     raster::{
-        self, Added, BucketEngine, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender, ViewSubset,
+        self, BucketEngine, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender, ViewSubset,
     },
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
@@ -223,33 +223,31 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
         })
         .map(|v| (v, new.normals()[v as usize]))
         .collect();
-    let touched = |corners: Option<[u32; 3]>| {
-        corners.is_some_and(|c| {
-            c.iter()
-                .any(|v| moved.iter().any(|m| m.0 == *v) || normals.iter().any(|n| n.0 == *v))
-        })
+    let touched = |by: &[(u32, DVec3)], corners: Option<[u32; 3]>| {
+        corners.is_some_and(|c| by.iter().any(|entry| c.contains(&entry.0)))
     };
-    let mut found = SceneEdit {
-        removed: Vec::new(),
-        added: Vec::new(),
-        moved: moved.clone(),
-        normals: normals.clone(),
-    };
+    let mut edit = SceneEdit::new(before.triangles.len(), true);
+    (edit.moved, edit.normals) = (moved.clone(), normals.clone());
     for (t, (&a, &b)) in before.triangles.iter().zip(&after.triangles).enumerate() {
-        if a != b || touched(a) || touched(b) {
-            if a.is_some() {
-                found.removed.push(t as u32);
-            }
-            if let Some(corners) = b {
-                found.added.push(Added {
-                    id: t as u32,
-                    corners,
-                    colors: after.colors.as_ref().map_or([[0.0; 3]; 3], |c| c[t]),
-                });
-            }
+        let stays = a == b && !touched(&moved, a);
+        if stays && !touched(&normals, a) {
+            continue;
+        }
+        if let Some(corners) = b {
+            let positions = corners.map(|v| after.positions[v as usize]);
+            let colors = after.colors.as_ref().map_or([[0.0; 3]; 3], |c| c[t]);
+            let put = if stays {
+                SceneEdit::restyle
+            } else {
+                SceneEdit::add
+            };
+            put(&mut edit, t as u32, corners, positions, colors);
+        }
+        if let (Some(corners), false) = (a, stays) {
+            edit.remove(t as u32, corners);
         }
     }
-    found
+    edit
 }
 
 /// The sum of the area normals of a closed fan does not depend on where its middle is: it moves, and its normal stays.

@@ -67,13 +67,13 @@ impl Stamps {
     }
 
     /// Begins a query that leaves out the given triangles.
-    pub(super) fn leave_out(&mut self, without: &[u32]) {
+    pub(super) fn leave_out(&mut self, without: impl Iterator<Item = u32>) {
         if self.now > u32::MAX - 2 {
             self.of.fill(0);
             self.now = 0;
         }
         self.now += 2;
-        for &id in without {
+        for id in without {
             self.of[id as usize] = self.now - 1;
         }
     }
@@ -173,7 +173,7 @@ mod tests {
             let mut found = Vec::new();
             stamps.now = u32::MAX - 3; // so that the second query starts the count again
             for _ in 0..2 {
-                stamps.leave_out(&without);
+                stamps.leave_out(without.iter().copied());
                 buckets.query(region, &mut stamps, &mut found);
                 found.sort_unstable();
                 let expected: Vec<u32> = (0..extents.len() as u32)

@@ -8,13 +8,11 @@
 mod lines;
 mod view;
 
-use glam::DVec3;
-
 use self::view::{BucketView, PartScratch};
 use super::{Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset};
 use crate::{
     parallel,
-    raster::{FaceGeometry, Grid, SampleKey},
+    raster::{Grid, SampleKey},
     view::ViewSet,
 };
 
@@ -23,14 +21,6 @@ use crate::{
 pub struct BucketEngine {
     model: Model,
     views: Vec<BucketView>,
-}
-
-/// Buffers of an evaluation, reused.
-#[derive(Clone, Debug)]
-struct BucketScratch {
-    geometry: Vec<(FaceGeometry, [DVec3; 3])>,
-    /// One for every part of the views that has a thread of its own.
-    parts: Vec<PartScratch>,
 }
 
 /// Most parts that the views are divided into: with fewer views each, handing over costs more than it saves.
@@ -47,20 +37,9 @@ impl BucketEngine {
         Self { model, views }
     }
 
+    /// One buffer for every part of the views that has a thread of its own.
     fn buffers(&self, parts: usize) -> UnrenderScratch {
-        UnrenderScratch::new(BucketScratch {
-            geometry: Vec::new(),
-            parts: vec![PartScratch::new(self.model.corners.len()); parts],
-        })
-    }
-
-    fn begin(&self, edit: &SceneEdit, scratch: &mut BucketScratch) {
-        scratch.geometry.clear();
-        let geometry = edit
-            .added
-            .iter()
-            .map(|face| self.model.geometry_after(edit, face));
-        scratch.geometry.extend(geometry);
+        UnrenderScratch::new(vec![PartScratch::new(self.model.corners.len()); parts])
     }
 }
 
@@ -74,27 +53,24 @@ impl Unrender for BucketEngine {
     }
 
     fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {
-        let scratch: &mut BucketScratch = scratch.of();
-        self.begin(edit, scratch);
-        let geometry = &scratch.geometry;
         let chosen = self.views.iter().enumerate();
         let chosen = chosen.filter(|&(i, _)| views.contains(i));
         let chosen: Vec<&BucketView> = chosen.map(|(_, view)| view).collect();
-        in_parts(chosen, &mut scratch.parts, &|view: &BucketView, part| {
-            let region = view.redraw(&self.model, edit, geometry, part);
+        let parts: &mut Vec<PartScratch> = scratch.of();
+        in_parts(chosen, parts, &|view: &BucketView, part| {
+            let region = view.redraw(&self.model, edit, part);
             view.difference(region, part)
         })
     }
 
     fn commit(&mut self, edit: &SceneEdit, scratch: &mut UnrenderScratch) -> i64 {
-        let scratch: &mut BucketScratch = scratch.of();
-        self.begin(edit, scratch);
-        let (model, geometry) = (&self.model, &scratch.geometry);
+        let model = &self.model;
         let views: Vec<&mut BucketView> = self.views.iter_mut().collect();
-        let sum = in_parts(views, &mut scratch.parts, &|view: &mut BucketView, part| {
-            let region = view.redraw(model, edit, geometry, part);
+        let parts: &mut Vec<PartScratch> = scratch.of();
+        let sum = in_parts(views, parts, &|view: &mut BucketView, part| {
+            let region = view.redraw(model, edit, part);
             let sum = view.difference(region, part);
-            view.apply(edit, geometry, region, part);
+            view.apply(edit, region, part);
             sum
         });
         self.model.apply(edit);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    super::{Added, Model, SceneEdit, difference},
+    super::{Model, SceneEdit, difference, scene_edit::EditedFace},
     lines::{Buckets, Stamps},
 };
 use crate::{
@@ -152,34 +152,26 @@ impl BucketView {
     fn face_after(
         &self,
         model: &Model,
-        edit: &SceneEdit,
-        added: &Added,
-        geometry: &(FaceGeometry, [DVec3; 3]),
+        added: &EditedFace,
         (moved, shaded): (&[ScreenVertex], &[f64]),
     ) -> Face {
         let colors = (!model.colors.is_empty()).then_some(&added.colors);
         let paint = if self.intensities.is_empty() {
-            Paint::flat(
-                self.shader
-                    .intensity(geometry.0.centroid, geometry.0.normal),
-                colors,
-            )
+            let g = &added.geometry;
+            Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
         } else {
-            let intensity = |v: u32| match edit.normals.iter().position(|n| n.0 == v) {
-                Some(i) => shaded[i],
-                None => self.intensities[v as usize],
-            };
-            Paint::gouraud(added.corners.map(intensity), colors)
+            let intensities = added.corners.map(|c| match c.shaded() {
+                Some(entry) => shaded[entry],
+                None => self.intensities[c.vertex as usize],
+            });
+            Paint::gouraud(intensities, colors)
         };
-        let screen = added.corners.map(|v| {
-            edit.moved
-                .iter()
-                .position(|m| m.0 == v)
-                .map_or_else(|| self.screen[v as usize], |i| moved[i])
-        });
         Face {
-            positions: geometry.1,
-            screen,
+            positions: added.positions,
+            screen: added.corners.map(|c| match c.moved() {
+                Some(entry) => moved[entry],
+                None => self.screen[c.vertex as usize],
+            }),
             paint,
         }
     }
@@ -189,10 +181,9 @@ impl BucketView {
         &self,
         model: &Model,
         edit: &SceneEdit,
-        geometry: &[(FaceGeometry, [DVec3; 3])],
         scratch: &mut PartScratch,
     ) -> PixelRect {
-        let region = self.set_up(model, edit, geometry, scratch);
+        let region = self.set_up(model, edit, scratch);
         scratch.keys.clear();
         scratch.luma.clear();
         if region.is_empty() {
@@ -224,13 +215,7 @@ impl BucketView {
     }
 
     /// Sets up the added triangles, and returns the bounding box of those that go and come.
-    fn set_up(
-        &self,
-        model: &Model,
-        edit: &SceneEdit,
-        geometry: &[(FaceGeometry, [DVec3; 3])],
-        scratch: &mut PartScratch,
-    ) -> PixelRect {
+    fn set_up(&self, model: &Model, edit: &SceneEdit, scratch: &mut PartScratch) -> PixelRect {
         let moved = edit.moved.iter().map(|m| self.projector.screen(m.1));
         scratch.moved.clear();
         scratch.moved.extend(moved);
@@ -242,14 +227,13 @@ impl BucketView {
             scratch.shaded.extend(normals.map(intensity));
         }
         let mut region = PixelRect::EMPTY;
-        for &id in &edit.removed {
+        for id in edit.before() {
             region = region.union(self.extents[id as usize]);
         }
         scratch.setups.clear();
         scratch.added_extents.clear();
-        for (added, geometry) in edit.added.iter().zip(geometry) {
-            let after = (&*scratch.moved, &*scratch.shaded);
-            let face = self.face_after(model, edit, added, geometry, after);
+        for added in edit.after() {
+            let face = self.face_after(model, added, (&scratch.moved, &scratch.shaded));
             let mut extent = PixelRect::EMPTY;
             face.pieces(&self.projector, self.view.cull, |setup, paint| {
                 extent = extent.union(setup.bounds());
@@ -269,7 +253,7 @@ impl BucketView {
         region: PixelRect,
         scratch: &mut PartScratch,
     ) -> PixelRect {
-        scratch.stamps.leave_out(&edit.removed);
+        scratch.stamps.leave_out(edit.before());
         let mut uncovered = PixelRect::EMPTY;
         for y in region.y0..region.y1 {
             let start = y as usize * self.luma.width() as usize;
@@ -326,24 +310,16 @@ impl BucketView {
     }
 
     /// Makes the change that [`BucketView::redraw`] has drawn.
-    pub(super) fn apply(
-        &mut self,
-        edit: &SceneEdit,
-        geometry: &[(FaceGeometry, [DVec3; 3])],
-        region: PixelRect,
-        scratch: &PartScratch,
-    ) {
-        for &id in &edit.removed {
+    pub(super) fn apply(&mut self, edit: &SceneEdit, region: PixelRect, scratch: &PartScratch) {
+        for id in edit.before() {
             self.buckets.remove(id, self.extents[id as usize]);
             self.extents[id as usize] = PixelRect::EMPTY;
         }
-        for ((added, extent), geometry) in
-            edit.added.iter().zip(&scratch.added_extents).zip(geometry)
-        {
+        for (added, extent) in edit.after().zip(&scratch.added_extents) {
             self.extents[added.id as usize] = *extent;
             self.buckets.insert(added.id, *extent);
             if !self.levels.is_empty() {
-                self.levels[added.id as usize] = self.level(&geometry.0);
+                self.levels[added.id as usize] = self.level(&added.geometry);
             }
         }
         for (&(v, _), &screen) in edit.moved.iter().zip(&scratch.moved) {

@@ -6,7 +6,6 @@
 //! seen. Views are dealt out to the parts one by one, those with Gouraud shading after the others: in a set, neighbours
 //! see much the same, and every part should have as much to do for a change as any other.
 
-mod change_set;
 mod fragment_lists;
 mod hi_z;
 mod probe;
@@ -15,7 +14,6 @@ mod view;
 mod view_delta;
 
 use self::{
-    change_set::ChangeSet,
     projected::{Projected, ScreenBoxes},
     view::{LayerView, ProbeContext},
     view_delta::ViewDelta,
@@ -42,14 +40,11 @@ pub struct LayerEngine {
     model: Model,
     parts: Vec<Part>,
     size: [u32; 2],
-    /// A view needs the geometry of faces.
-    flat: bool,
 }
 
 /// Buffers of an evaluation, reused.
 #[derive(Clone, Debug)]
 struct LayerScratch {
-    changes: ChangeSet,
     parts: Vec<PartScratch>,
     /// Nothing else runs beside: parts may be given to other threads.
     lone: bool,
@@ -57,10 +52,20 @@ struct LayerScratch {
 
 #[derive(Clone, Debug)]
 struct PartScratch {
+    screens: Screens,
+    delta: ViewDelta,
+}
+
+/// An edit on the screens of the views of a part.
+#[derive(Clone, Debug)]
+struct Screens {
+    /// Vertices that move, as they will be.
     moved: Projected,
+    /// Bounding boxes of the fresh triangles, and of all that go and come.
     fresh: ScreenBoxes,
     all: ScreenBoxes,
-    delta: ViewDelta,
+    /// Views, one bit for each, in which a triangle that goes is seen.
+    uncovers: u64,
 }
 
 /// Some of the views.
@@ -83,7 +88,7 @@ impl Part {
     fn new(model: &Model, views: Vec<(usize, LayerView)>) -> Self {
         let (indices, views): (Vec<_>, Vec<_>) = views.into_iter().unzip();
         let count = views.len();
-        let shaded = views.iter().any(LayerView::is_shaded);
+        let shaded = views.iter().any(|view| !view.plain);
         let mut part = Self {
             vertices: Projected::new(count, model.positions.len(), shaded),
             intensities: Vec::new(),
@@ -96,7 +101,7 @@ impl Part {
             part.vertices
                 .project(v, position, part.views.iter().map(|view| &view.projector));
         }
-        if part.views.iter().any(LayerView::is_gouraud) {
+        if part.views.iter().any(|view| view.gouraud) {
             part.intensities = (0..model.positions.len() as u32)
                 .flat_map(|v| {
                     part.views
@@ -119,16 +124,13 @@ impl Part {
 
     /// Puts the vertices that move on the screens of the views in `lanes` (a bit for each), and finds the boxes; those of
     /// other views mean nothing.
-    fn begin(
-        &self,
-        edit: &SceneEdit,
-        changes: &ChangeSet,
-        lanes: u64,
-        scratch: &mut PartScratch,
-    ) -> u64 {
-        let PartScratch {
-            moved, fresh, all, ..
-        } = scratch;
+    fn project(&self, edit: &SceneEdit, lanes: u64, screens: &mut Screens) {
+        let Screens {
+            moved,
+            fresh,
+            all,
+            uncovers,
+        } = screens;
         moved.resize(edit.moved.len());
         for (entry, m) in edit.moved.iter().enumerate() {
             for lane in each(lanes) {
@@ -136,81 +138,63 @@ impl Part {
             }
         }
         fresh.clear(self.views.len());
-        for &v in &changes.rim {
+        for &v in &edit.rim {
             fresh.add(&self.vertices, v as usize);
         }
-        for &entry in &changes.moved {
+        for &entry in &edit.movers {
             fresh.add(moved, entry as usize);
         }
         all.copy(fresh);
-        for &v in &changes.inside {
+        for &v in &edit.inside {
             all.add(&self.vertices, v as usize);
         }
-        let seen = changes.gone.iter().map(|&id| self.seen[id as usize]);
-        seen.fold(0, |all, bits| all | bits)
+        let seen = edit.gone.iter().map(|&id| self.seen[id as usize]);
+        *uncovers = seen.fold(0, |all, bits| all | bits);
     }
 
     fn evaluate(
         &self,
         model: &Model,
         edit: &SceneEdit,
-        changes: &ChangeSet,
         lanes: u64,
         scratch: &mut PartScratch,
     ) -> i64 {
         if lanes == 0 {
             return 0;
         }
-        let uncovers = self.begin(edit, changes, lanes, scratch);
+        let PartScratch { screens, delta } = scratch;
+        self.project(edit, lanes, screens);
         let mut sum = 0;
         for lane in each(lanes) {
             let context = ProbeContext {
                 model,
                 edit,
-                changes,
-                vertices: &self.vertices,
-                moved: &scratch.moved,
-                intensities: &self.intensities,
-                fresh: &scratch.fresh,
-                all: &scratch.all,
-                uncovers,
-                seen: &self.seen,
+                part: self,
+                screens,
                 lane,
-                lane_count: self.views.len(),
             };
-            sum += self.views[lane].probe(&context, &mut scratch.delta);
+            sum += self.views[lane].probe(&context, delta);
         }
         sum
     }
 
-    fn commit(
-        &mut self,
-        model: &Model,
-        edit: &SceneEdit,
-        changes: &ChangeSet,
-        scratch: &mut PartScratch,
-    ) -> i64 {
-        let uncovers = self.begin(edit, changes, all(self.views.len()), scratch);
-        let lane_count = self.views.len();
+    fn commit(&mut self, model: &Model, edit: &SceneEdit, scratch: &mut PartScratch) -> i64 {
+        let PartScratch { screens, delta } = scratch;
+        self.project(edit, all(self.views.len()), screens);
+        let mut views = std::mem::take(&mut self.views);
+        let lane_count = views.len();
         let mut sum = 0;
-        for (lane, view) in self.views.iter_mut().enumerate() {
+        for (lane, view) in views.iter_mut().enumerate() {
             let context = ProbeContext {
                 model,
                 edit,
-                changes,
-                vertices: &self.vertices,
-                moved: &scratch.moved,
-                intensities: &self.intensities,
-                fresh: &scratch.fresh,
-                all: &scratch.all,
-                uncovers,
-                seen: &self.seen,
+                part: self,
+                screens,
                 lane,
-                lane_count,
             };
-            sum += view.probe(&context, &mut scratch.delta);
-            view.apply(&context, &mut scratch.delta);
-            for &(before, after) in &scratch.delta.swaps {
+            sum += view.probe(&context, delta);
+            view.apply(&context, delta);
+            for &(before, after) in &delta.swaps {
                 for (id, step) in [(before, u32::MAX), (after, 1)] {
                     let Some(seen) = self.seen.get_mut(id as usize) else {
                         continue; // the background
@@ -221,15 +205,16 @@ impl Part {
                 }
             }
         }
+        self.views = views;
         for (entry, &(v, _)) in edit.moved.iter().enumerate() {
-            self.vertices.copy(v as usize, &scratch.moved, entry);
+            self.vertices.copy(v as usize, &screens.moved, entry);
         }
         if !self.intensities.is_empty() {
             for &(v, normal) in &edit.normals {
                 let position = model.position_after(edit, v);
                 for (lane, view) in self.views.iter().enumerate() {
                     self.intensities[v as usize * lane_count + lane] =
-                        view.intensity(position, normal);
+                        view.shader.intensity(position, normal);
                 }
             }
         }
@@ -268,9 +253,8 @@ impl LayerEngine {
         let views = parallel::map(count, |i| {
             LayerView::new(&model, &set.views[i], set, reference[i].values(), colored)
         });
-        let flat = colored || views.iter().any(|view| !view.is_gouraud());
         let mut views: Vec<(usize, LayerView)> = views.into_iter().enumerate().collect();
-        views.sort_by_key(|(_, view)| view.is_gouraud());
+        views.sort_by_key(|(_, view)| view.gouraud);
         let mut dealt: Vec<Vec<_>> = (0..part_count).map(|_| Vec::new()).collect();
         for (turn, view) in views.into_iter().enumerate() {
             dealt[turn % part_count].push(view);
@@ -280,23 +264,20 @@ impl LayerEngine {
             model,
             parts,
             size: [set.width * set.samples, set.height * set.samples],
-            flat,
         }
     }
 
     fn buffers(&self, lone: bool) -> UnrenderScratch {
         let part = |part: &Part| PartScratch {
-            moved: Projected::new(
-                part.views.len(),
-                1,
-                part.views.iter().any(LayerView::is_shaded),
-            ),
-            fresh: ScreenBoxes::default(),
-            all: ScreenBoxes::default(),
+            screens: Screens {
+                moved: Projected::new(part.views.len(), 1, part.views.iter().any(|v| !v.plain)),
+                fresh: ScreenBoxes::default(),
+                all: ScreenBoxes::default(),
+                uncovers: 0,
+            },
             delta: ViewDelta::default(),
         };
         UnrenderScratch::new(LayerScratch {
-            changes: ChangeSet::new(self.model.corners.len()),
             parts: self.parts.iter().map(part).collect(),
             lone,
         })
@@ -327,14 +308,13 @@ impl Unrender for LayerEngine {
 
     fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut LayerScratch = scratch.of();
-        scratch.changes.fill(&self.model, edit, self.flat);
-        let (model, changes) = (&self.model, &scratch.changes);
+        let model = &self.model;
         let work = |i: usize, scratch: &mut PartScratch| {
             let part = &self.parts[i];
             let lanes = each(all(part.views.len()));
             let lanes = lanes.filter(|lane| views.contains(part.indices[*lane]));
             let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
-            part.evaluate(model, edit, changes, lanes, scratch)
+            part.evaluate(model, edit, lanes, scratch)
         };
         if scratch.lone && self.parts.len() > 1 {
             parallel::sum_mut(&mut scratch.parts, &work)
@@ -346,11 +326,9 @@ impl Unrender for LayerEngine {
 
     fn commit(&mut self, edit: &SceneEdit, scratch: &mut UnrenderScratch) -> i64 {
         let scratch: &mut LayerScratch = scratch.of();
-        scratch.changes.fill(&self.model, edit, self.flat);
-        let (model, changes) = (&self.model, &scratch.changes);
-        let work = |(part, scratch): (&mut Part, &mut PartScratch)| {
-            part.commit(model, edit, changes, scratch)
-        };
+        let model = &self.model;
+        let work =
+            |(part, scratch): (&mut Part, &mut PartScratch)| part.commit(model, edit, scratch);
         let count = self.parts.len();
         let pairs = self.parts.iter_mut().zip(&mut scratch.parts);
         let sum = if count > 1 {

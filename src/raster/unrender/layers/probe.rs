@@ -6,8 +6,7 @@
 //! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others search the layers.
 
 use super::{
-    super::difference,
-    change_set::After,
+    super::{difference, scene_edit::EditedFace},
     projected::clipped_pixels,
     view::{LayerView, ProbeContext},
     view_delta::{Piece, ViewDelta},
@@ -22,7 +21,7 @@ impl LayerView {
     pub(super) fn probe(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) -> i64 {
         delta.count = 0;
         delta.restyled.clear();
-        let uncovers = context.uncovers >> context.lane & 1 != 0;
+        let uncovers = context.uncovers();
         let restyles = self.restyles(context);
         let hidden = !uncovers && self.is_hidden(context);
         if hidden && !restyles {
@@ -54,7 +53,11 @@ impl LayerView {
     /// The pixels that the triangles can touch that go and come.
     #[inline]
     pub(super) fn region(&self, context: &ProbeContext<'_>) -> PixelRect {
-        match context.all.pixels(context.lane, self.projector.bits()) {
+        match context
+            .screens
+            .all
+            .pixels(context.lane, self.projector.bits())
+        {
             Some(pixels) => pixels.intersection(self.projector.image()),
             None => self.clipped_region(context),
         }
@@ -67,10 +70,10 @@ impl LayerView {
         let mut add = |face: &Face| {
             region = region.union(clipped_pixels(face, &self.projector, self.view.cull));
         };
-        for &id in &context.changes.gone {
+        for &id in &context.edit.gone {
             add(&self.flat_face(context, id));
         }
-        for face in &context.changes.fresh {
+        for face in &context.edit.fresh {
             add(&self.flat_face_after(context, face));
         }
         region
@@ -78,31 +81,28 @@ impl LayerView {
 
     /// True where a triangle that stays in its place and looks different is seen.
     fn restyles(&self, context: &ProbeContext<'_>) -> bool {
-        let restyled = &context.changes.restyled;
-        !self.plain
-            && restyled
-                .iter()
-                .any(|f| context.seen[f.id as usize] >> context.lane & 1 != 0)
+        !self.plain && context.edit.restyled.iter().any(|f| context.sees(f.id))
     }
 
     /// True where the fresh triangles are behind everything that is seen around their box.
     #[inline]
     fn is_hidden(&self, context: &ProbeContext<'_>) -> bool {
-        let Some(pixels) = context.fresh.pixels(context.lane, self.projector.bits()) else {
+        let fresh = &context.screens.fresh;
+        let Some(pixels) = fresh.pixels(context.lane, self.projector.bits()) else {
             return false;
         };
         let pixels = pixels.intersection(self.projector.image());
-        self.hi_z.hides(pixels, context.fresh.nearest(context.lane))
+        self.hi_z.hides(pixels, fresh.nearest(context.lane))
     }
 
     /// Fills the slots of the region with lower bounds, and finds the pixels that show a triangle that goes.
     fn enter(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         delta.begin(self.region(context));
         delta.entered = true;
-        let uncovers = context.uncovers >> context.lane & 1 != 0;
+        let uncovers = context.uncovers();
         let region = delta.region;
         let width = region.width();
-        let fates = context.changes.fates();
+        let fates = context.edit.fates();
         let mut count = 0;
         for (row, y) in (region.y0..region.y1).enumerate() {
             let from = y as usize * self.width + region.x0 as usize;
@@ -155,17 +155,20 @@ impl LayerView {
     #[inline]
     fn behind(&self, context: &ProbeContext<'_>, delta: &ViewDelta, at: u32) -> SampleKey {
         let sample = delta.sample(at, self.width);
-        self.lists.below(sample, |id| context.changes.goes(id))
+        self.lists.below(sample, |id| context.edit.goes(id))
     }
 
     /// Lets the fresh triangles compete for the pixels they cover.
     fn draw_fresh(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
-        let uncovers = context.uncovers >> context.lane & 1 != 0;
-        for face in &context.changes.fresh {
+        let uncovers = context.uncovers();
+        for face in &context.edit.fresh {
             let corners = face.corners.map(|c| match c.moved() {
-                Some(entry) => context.moved.corner(entry, context.lane),
-                None => context.vertices.corner(c.vertex as usize, context.lane),
+                Some(entry) => context.screens.moved.corner(entry, context.lane),
+                None => context
+                    .part
+                    .vertices
+                    .corner(c.vertex as usize, context.lane),
             });
             if let [Some(a), Some(b), Some(c)] = corners {
                 match SmallTriangle::fit([a, b, c], bits, self.view.cull, image) {
@@ -252,7 +255,7 @@ impl LayerView {
 
     /// Level or paint of a small fresh triangle.
     #[inline]
-    fn piece(&self, context: &ProbeContext<'_>, face: &After, delta: &ViewDelta) -> Piece {
+    fn piece(&self, context: &ProbeContext<'_>, face: &EditedFace, delta: &ViewDelta) -> Piece {
         if self.plain {
             return Piece {
                 level: self.level(&face.geometry),
@@ -305,8 +308,8 @@ impl LayerView {
     /// Finds the luma of pixels that keep their triangle where it looks different.
     fn restyle(&self, context: &ProbeContext<'_>, delta: &mut ViewDelta) {
         let (bits, image) = (self.projector.bits(), self.projector.image());
-        for after in &context.changes.restyled {
-            if context.seen[after.id as usize] >> context.lane & 1 == 0 {
+        for after in &context.edit.restyled {
+            if !context.sees(after.id) {
                 continue;
             }
             let face = self.face_after(context, after, &delta.intensities);

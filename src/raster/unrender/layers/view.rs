@@ -1,13 +1,10 @@
 //! One view of the layers engine: its picture with all layers, and what triangles look like in it.
 
-use glam::DVec3;
-
 use super::{
-    super::{Model, SceneEdit},
-    change_set::{After, ChangeSet, Corner, Fate},
+    super::{Model, SceneEdit, scene_edit::EditedFace},
+    Part, Screens,
     fragment_lists::{FragmentLists, TILE},
     hi_z::HiZ,
-    projected::{Projected, ScreenBoxes},
 };
 use crate::{
     num::fixed::level,
@@ -15,26 +12,34 @@ use crate::{
     view::{Interpolation, View, ViewSet},
 };
 
-/// Input of [`LayerView::probe`]: the change, sorted out and projected to all views of a part, and the view in hand.
+/// Input of [`LayerView::probe`]: an edit, projected to all views of a part, and the view in hand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ProbeContext<'a> {
     pub(super) model: &'a Model,
     pub(super) edit: &'a SceneEdit,
-    pub(super) changes: &'a ChangeSet,
-    /// Vertices as they are, and those that move as they will be.
-    pub(super) vertices: &'a Projected,
-    pub(super) moved: &'a Projected,
-    /// Intensities by vertex and view; empty without Gouraud shading.
-    pub(super) intensities: &'a [f64],
-    /// Bounding boxes of the fresh triangles, and of all that go and come.
-    pub(super) fresh: &'a ScreenBoxes,
-    pub(super) all: &'a ScreenBoxes,
-    /// Views, one bit for each, in which a triangle that goes is seen.
-    pub(super) uncovers: u64,
-    /// By triangle, one bit for every view in which it is seen.
-    pub(super) seen: &'a [u64],
+    pub(super) part: &'a Part,
+    pub(super) screens: &'a Screens,
     pub(super) lane: usize,
-    pub(super) lane_count: usize,
+}
+
+impl ProbeContext<'_> {
+    /// True where a triangle that goes is seen in the view.
+    #[inline]
+    pub(super) fn uncovers(&self) -> bool {
+        self.screens.uncovers >> self.lane & 1 != 0
+    }
+
+    /// True where a triangle is seen in the view.
+    #[inline]
+    pub(super) fn sees(&self, id: u32) -> bool {
+        self.part.seen[id as usize] >> self.lane & 1 != 0
+    }
+
+    /// Place of a vertex among the intensities.
+    #[inline]
+    fn intensity(&self, vertex: u32) -> usize {
+        vertex as usize * self.part.indices.len() + self.lane
+    }
 }
 
 /// A picture with all its layers.
@@ -174,21 +179,6 @@ impl LayerView {
         level(self.shader.intensity(geometry.centroid, geometry.normal))
     }
 
-    /// The intensity of a point with a normal.
-    pub(super) fn intensity(&self, position: DVec3, normal: DVec3) -> f64 {
-        self.shader.intensity(position, normal)
-    }
-
-    /// True where pixels of a triangle differ in luma.
-    pub(super) fn is_shaded(&self) -> bool {
-        !self.plain
-    }
-
-    /// True where vertices have intensities.
-    pub(super) fn is_gouraud(&self) -> bool {
-        self.gouraud
-    }
-
     /// The intensity of a vertex of the model; 0 without Gouraud shading.
     pub(super) fn vertex_intensity(&self, model: &Model, vertex: u32) -> f64 {
         if self.gouraud {
@@ -227,8 +217,8 @@ impl LayerView {
         let model = context.model;
         let corners = model.corners[id as usize];
         let intensities = corners.map(|v| {
-            let at = v as usize * context.lane_count + context.lane;
-            context.intensities.get(at).copied().unwrap_or(0.0)
+            let known = context.part.intensities.get(context.intensity(v));
+            known.copied().unwrap_or(0.0)
         });
         Face {
             paint: self.paint_now(model, id, intensities),
@@ -240,16 +230,16 @@ impl LayerView {
     pub(super) fn face_after(
         &self,
         context: &ProbeContext<'_>,
-        face: &After,
+        face: &EditedFace,
         shaded: &[f64],
     ) -> Face {
         let colors = (!context.model.colors.is_empty()).then_some(&face.colors);
         let paint = if self.gouraud {
-            let intensity = |c: Corner| match c.shaded() {
+            let intensities = face.corners.map(|c| match c.shaded() {
                 Some(entry) => shaded[entry],
-                None => context.intensities[c.vertex as usize * context.lane_count + context.lane],
-            };
-            Paint::gouraud(face.corners.map(intensity), colors)
+                None => context.part.intensities[context.intensity(c.vertex)],
+            });
+            Paint::gouraud(intensities, colors)
         } else {
             let g = &face.geometry;
             Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
@@ -265,18 +255,21 @@ impl LayerView {
         let corners = context.model.corners[id as usize];
         Face {
             positions: corners.map(|v| context.model.positions[v as usize]),
-            screen: corners.map(|v| context.vertices.screen(v as usize, context.lane)),
+            screen: corners.map(|v| context.part.vertices.screen(v as usize, context.lane)),
             paint: Paint::Flat(0),
         }
     }
 
     /// A triangle after the change on this screen, whatever it looks like.
-    pub(super) fn flat_face_after(&self, context: &ProbeContext<'_>, face: &After) -> Face {
+    pub(super) fn flat_face_after(&self, context: &ProbeContext<'_>, face: &EditedFace) -> Face {
         Face {
             positions: face.positions,
             screen: face.corners.map(|c| match c.moved() {
-                Some(entry) => context.moved.screen(entry, context.lane),
-                None => context.vertices.screen(c.vertex as usize, context.lane),
+                Some(entry) => context.screens.moved.screen(entry, context.lane),
+                None => context
+                    .part
+                    .vertices
+                    .screen(c.vertex as usize, context.lane),
             }),
             paint: Paint::Flat(0),
         }
@@ -293,11 +286,9 @@ impl LayerView {
         if id as usize >= context.model.corners.len() {
             return self.background;
         }
-        let face = match context.changes.fate(id) {
-            Fate::Restyled(index) => {
-                self.face_after(context, &context.changes.restyled[index], shaded)
-            }
-            _ => self.face_now(context, id),
+        let face = match context.edit.restyled(id) {
+            Some(after) => self.face_after(context, after, shaded),
+            None => self.face_now(context, id),
         };
         self.luma_at(&face, place)
     }

@@ -174,14 +174,14 @@ impl LayerView {
         }
         // (2) The layers.
         let (cull, width, columns) = (self.view.cull, self.width, self.tile_columns);
-        for &id in &context.changes.gone {
+        for &id in &context.edit.gone {
             let face = self.flat_face(context, id);
             let lists = &mut self.lists;
             delta.fragments(&face, &self.projector, cull, width, |sample, _, _| {
                 lists.remove(sample, id);
             });
         }
-        for after in &context.changes.fresh {
+        for after in &context.edit.fresh {
             let face = self.flat_face_after(context, after);
             let lists = &mut self.lists;
             delta.fragments(

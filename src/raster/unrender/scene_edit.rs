@@ -1,0 +1,223 @@
+//! [`SceneEdit`]: a change of the mesh as the pictures see it, with all that is the same in every view.
+
+use glam::DVec3;
+
+use crate::raster::FaceGeometry;
+
+/// No entry.
+const NONE: u32 = u32::MAX;
+
+/// A corner of a triangle after an edit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EditedCorner {
+    pub(super) vertex: u32,
+    moved: u32,
+    shaded: u32,
+}
+
+impl EditedCorner {
+    /// The entry of the vertex in [`SceneEdit::moved`], if it moves.
+    #[inline]
+    pub(super) fn moved(self) -> Option<usize> {
+        (self.moved != NONE).then_some(self.moved as usize)
+    }
+
+    /// The entry of the vertex in [`SceneEdit::normals`], if its normal changes.
+    #[inline]
+    pub(super) fn shaded(self) -> Option<usize> {
+        (self.shaded != NONE).then_some(self.shaded as usize)
+    }
+}
+
+/// A triangle after an edit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EditedFace {
+    pub(super) id: u32,
+    pub(super) corners: [EditedCorner; 3],
+    pub(super) positions: [DVec3; 3],
+    /// Red, green and blue at its corners; ignored where the model is white.
+    pub(super) colors: [[f64; 3]; 3],
+    /// Normal and centroid, for flat shading; zeros where no view needs them.
+    pub(super) geometry: FaceGeometry,
+}
+
+/// A change of the mesh, as the pictures see it: an edge collapse, a move, a flip, a removal. Reused as a buffer.
+///
+/// Filled after [`SceneEdit::clear`]: first what moves and the normals; then the triangles that come
+/// ([`SceneEdit::add`]) or look different ([`SceneEdit::restyle`]), and those that go ([`SceneEdit::remove`]).
+#[derive(Clone, Debug)]
+pub struct SceneEdit {
+    /// New positions; every triangle at such a vertex goes.
+    pub moved: Vec<(u32, DVec3)>,
+    /// Where a view is Gouraud shaded: unit normals of all vertices that move (the light falls on them from elsewhere,
+    /// even where their normals stay as they are) or whose normals change; every triangle at them goes or looks
+    /// different.
+    pub normals: Vec<(u32, DVec3)>,
+    /// Triangles that disappear or change their shape.
+    pub(super) gone: Vec<u32>,
+    /// Triangles that appear or have changed their shape.
+    pub(super) fresh: Vec<EditedFace>,
+    /// Triangles that stay where they are and look different.
+    pub(super) restyled: Vec<EditedFace>,
+    /// Vertices of fresh triangles that do not move.
+    pub(super) rim: Vec<u32>,
+    /// Vertices of gone triangles that are not in the rim.
+    pub(super) inside: Vec<u32>,
+    /// Entries of `moved` that fresh triangles use.
+    pub(super) movers: Vec<u32>,
+    /// By triangle: 0 stays, 1 goes, more is restyled.
+    fates: Vec<u16>,
+    flat: bool,
+}
+
+impl SceneEdit {
+    /// Buffers for a scene with this number of triangles; `flat` where a view needs the geometry of faces.
+    pub fn new(triangles: usize, flat: bool) -> Self {
+        Self {
+            moved: Vec::new(),
+            normals: Vec::new(),
+            gone: Vec::new(),
+            fresh: Vec::new(),
+            restyled: Vec::new(),
+            rim: Vec::new(),
+            inside: Vec::new(),
+            movers: Vec::new(),
+            // One more for samples that nothing covers.
+            fates: vec![0; triangles + 1],
+            flat,
+        }
+    }
+
+    /// Forgets the last edit.
+    pub fn clear(&mut self) {
+        for &id in &self.gone {
+            self.fates[id as usize] = 0;
+        }
+        for face in &self.restyled {
+            self.fates[face.id as usize] = 0;
+        }
+        for list in [&mut self.moved, &mut self.normals] {
+            list.clear();
+        }
+        for list in [
+            &mut self.gone,
+            &mut self.rim,
+            &mut self.inside,
+            &mut self.movers,
+        ] {
+            list.clear();
+        }
+        self.fresh.clear();
+        self.restyled.clear();
+    }
+
+    /// A triangle comes, or has changed its shape: then it also goes.
+    pub fn add(
+        &mut self,
+        id: u32,
+        corners: [u32; 3],
+        positions: [DVec3; 3],
+        colors: [[f64; 3]; 3],
+    ) {
+        let face = self.face(id, corners, positions, colors);
+        for corner in face.corners {
+            match corner.moved() {
+                Some(_) => note(&mut self.movers, corner.moved),
+                None => note(&mut self.rim, corner.vertex),
+            }
+        }
+        self.fresh.push(face);
+    }
+
+    /// A triangle stays where it is and looks different.
+    pub fn restyle(
+        &mut self,
+        id: u32,
+        corners: [u32; 3],
+        positions: [DVec3; 3],
+        colors: [[f64; 3]; 3],
+    ) {
+        let Ok(fate) = u16::try_from(self.restyled.len() + 2) else {
+            self.add(id, corners, positions, colors);
+            return self.remove(id, corners);
+        };
+        self.fates[id as usize] = fate;
+        let face = self.face(id, corners, positions, colors);
+        self.restyled.push(face);
+    }
+
+    /// A triangle with these corners goes.
+    pub fn remove(&mut self, id: u32, corners: [u32; 3]) {
+        self.fates[id as usize] = 1;
+        self.gone.push(id);
+        for v in corners {
+            if !self.rim.contains(&v) {
+                note(&mut self.inside, v);
+            }
+        }
+    }
+
+    fn face(
+        &self,
+        id: u32,
+        corners: [u32; 3],
+        positions: [DVec3; 3],
+        colors: [[f64; 3]; 3],
+    ) -> EditedFace {
+        let entry = |list: &[(u32, DVec3)], v: u32| {
+            let found = list.iter().position(|e| e.0 == v);
+            found.map_or(NONE, |i| i as u32)
+        };
+        EditedFace {
+            id,
+            corners: corners.map(|vertex| EditedCorner {
+                vertex,
+                moved: entry(&self.moved, vertex),
+                shaded: entry(&self.normals, vertex),
+            }),
+            positions,
+            colors,
+            geometry: if self.flat {
+                FaceGeometry::new(positions)
+            } else {
+                FaceGeometry::default()
+            },
+        }
+    }
+
+    /// The triangles that come or look different.
+    pub(super) fn after(&self) -> impl Iterator<Item = &EditedFace> {
+        self.fresh.iter().chain(&self.restyled)
+    }
+
+    /// The triangles that go or look different.
+    pub(super) fn before(&self) -> impl Iterator<Item = u32> {
+        let restyled = self.restyled.iter().map(|face| face.id);
+        self.gone.iter().copied().chain(restyled)
+    }
+
+    /// By triangle: 1 where it goes. For tight loops; see [`SceneEdit::goes`].
+    #[inline]
+    pub(super) fn fates(&self) -> &[u16] {
+        &self.fates
+    }
+
+    /// True where the triangle goes.
+    #[inline]
+    pub(super) fn goes(&self, id: u32) -> bool {
+        self.fates[id as usize] == 1
+    }
+
+    /// The triangle as it looks after the edit, where it stays in its place and looks different.
+    #[inline]
+    pub(super) fn restyled(&self, id: u32) -> Option<&EditedFace> {
+        let index = self.fates[id as usize].checked_sub(2)?;
+        Some(&self.restyled[usize::from(index)])
+    }
+}
+
+fn note(list: &mut Vec<u32>, entry: u32) {
+    if !list.contains(&entry) {
+        list.push(entry);
+    }
+}
