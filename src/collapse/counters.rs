@@ -1,8 +1,26 @@
-//! Counts of the work of a run.
+//! The account of a run: why it ended, and counts of its work.
 
 use serde::Serialize;
 
 use super::Refusals;
+
+/// Reason why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "reason")]
+#[non_exhaustive]
+pub enum Stop {
+    /// There are no more triangles than wanted.
+    TargetReached,
+    /// The next collapse would exceed the error that is allowed.
+    ErrorLimit,
+    /// No edge may be collapsed any more.
+    NoLegalCollapse {
+        /// Number of the edges left that each reason blocks.
+        refusals: Refusals,
+    },
+    /// The input already had no more triangles than wanted; it is returned as it is.
+    TargetAboveInput,
+}
 
 /// Counts of the work of a run. The same for every number of threads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

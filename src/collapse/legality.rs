@@ -10,8 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EdgeStar, LiveMesh, Refusal,
-    edge_star::{Anchor, normal},
+    EdgeStar, Evaluation, LiveMesh, Patch, Refusal, check_collapse_folds, edge_star::normal,
 };
 use crate::num::Each;
 
@@ -52,6 +51,84 @@ impl Default for Rules {
             normal_cosine: 0.2,
             fold_cosine: no_fold(),
         }
+    }
+}
+
+/// Places that the rules leave to the new vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Anywhere.
+    Free,
+    /// Only at this end of the edge (an index into [`EdgeStar::ends`]).
+    At(usize),
+}
+
+/// A position that was rounded to the file's precision and then passed every rule at its [`Site`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Admitted(DVec3);
+
+impl Admitted {
+    /// The position in frame units.
+    pub fn position(self) -> DVec3 {
+        self.0
+    }
+}
+
+/// An edge that may be collapsed, as a method sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    /// The mesh.
+    pub live: &'a LiveMesh,
+    /// The faces around the edge.
+    pub star: &'a EdgeStar,
+    /// Places that the rules leave to the new vertex.
+    pub anchor: Anchor,
+    /// The rules.
+    pub rules: Rules,
+    /// Accuracy that is asked for: [`Evaluation::Exact`] unless the method's plan has rough evaluations.
+    pub accuracy: Evaluation,
+}
+
+impl<'a> Site<'a> {
+    /// The site of a star, for an exact evaluation.
+    ///
+    /// # Errors
+    /// The rule that forbids this collapse wherever the new vertex lies.
+    pub fn new(live: &'a LiveMesh, star: &'a EdgeStar, rules: Rules) -> Result<Self, Refusal> {
+        Ok(Self {
+            live,
+            star,
+            anchor: anchor(live, star, rules)?,
+            rules,
+            accuracy: Evaluation::Exact,
+        })
+    }
+
+    /// The one position the rules leave, or `None` where the method chooses.
+    pub fn fixed(&self) -> Option<DVec3> {
+        match self.anchor {
+            Anchor::Free => None,
+            Anchor::At(end) => Some(self.star.points[end]),
+        }
+    }
+
+    /// Rounds a position to the file's precision and tests it. Judge costs at what this returns.
+    ///
+    /// # Errors
+    /// The rule that forbids it. A position away from the anchor is [`Refusal::Locked`].
+    pub fn admit(&self, position: DVec3) -> Result<Admitted, Refusal> {
+        let position = self.live.round(position).ok_or(Refusal::Unplaced)?;
+        if self.fixed().is_some_and(|p| p != position) {
+            return Err(Refusal::Locked);
+        }
+        shape(self.star, position, self.rules)?;
+        check_collapse_folds(self.live, self.star, position, self.rules)?;
+        Ok(Admitted(position))
+    }
+
+    /// Fills `patch` with the collapse to `position`: the faces of this candidate, under their final ids.
+    pub fn patch(&self, position: Admitted, patch: &mut Patch) {
+        self.star.patch(self.live, position.0, patch);
     }
 }
 

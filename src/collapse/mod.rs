@@ -38,19 +38,17 @@ mod star;
 mod tiles;
 pub mod wedge;
 
-pub use counters::Counters;
-pub use edge_star::{Anchor, BoundaryEdge, EdgeStar, Spoke, StarFace};
-pub use engine::{Engine, Heap, Key, Schedule, Stop};
+pub use counters::{Counters, Stop};
+pub use edge_star::{BoundaryEdge, EdgeStar, Spoke, StarFace};
+pub use engine::{Engine, Heap, Key, Schedule};
 pub use flip::{check_uv_orientation, flip};
 pub use fold::{check_collapse_folds, check_folds, fold_amount, is_folded};
 pub use history::{Entry, Header, History, Record, Recorder};
-pub use legality::{Rules, Topology};
-pub use live::{Changes, LiveMesh, NONE};
-pub use method::{
-    Admitted, Estimates, Evaluation, Method, MethodScratch, Plan, Proposal, Review, Site,
-};
+pub use legality::{Admitted, Anchor, Rules, Site, Topology};
+pub use live::{LiveMesh, NONE};
+pub use method::{Estimates, Evaluation, Method, MethodScratch, Plan, Proposal, Review};
 pub use observer::Observer;
-pub use patch::{Move, Patch, PatchFace};
+pub use patch::{Changes, Move, Patch, PatchFace};
 pub use refusal::{Reason, Refusal, Refusals};
 pub use replay::Replay;
 pub use star::{Freedom, Star};

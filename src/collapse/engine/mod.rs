@@ -3,44 +3,16 @@
 //! Evaluations run in parallel in fixed batches whose results are put together by edge id; queue and commits are
 //! serial. The result does not depend on the number of threads.
 
-mod evaluator;
-mod heap;
 mod queue;
 mod survey;
 
-use serde::Serialize;
-
-use self::{
-    evaluator::{Evaluator, Outcome},
-    queue::{Front, Queue},
-};
-pub use self::{
-    heap::{Heap, Key},
-    queue::Schedule,
-};
+use self::queue::Queue;
+pub use self::queue::{Heap, Key, Schedule};
 use super::{
     Changes, Counters, EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Observer, Patch,
-    Plan, Proposal, Refusal, Refusals, Review, Rules,
+    Plan, Proposal, Refusal, Review, Rules, Site, Stop,
 };
 use crate::{Error, Progress, Result, parallel};
-
-/// Reason why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "reason")]
-#[non_exhaustive]
-pub enum Stop {
-    /// There are no more triangles than wanted.
-    TargetReached,
-    /// The next collapse would exceed the error that is allowed.
-    ErrorLimit,
-    /// No edge may be collapsed any more.
-    NoLegalCollapse {
-        /// Number of the edges left that each reason blocks.
-        refusals: Refusals,
-    },
-    /// The input already had no more triangles than wanted; it is returned as it is.
-    TargetAboveInput,
-}
 
 /// Collapses between two reports of progress.
 const REPORT_EVERY: u64 = 256;
@@ -165,8 +137,8 @@ impl Engine {
                     let refusals = self.blocked(method);
                     break Stop::NoLegalCollapse { refusals };
                 }
-                Some(Front::Stale(id)) => self.requeue(method, &mut queue, id),
-                Some(Front::Ready(id, proposal)) => {
+                Some((id, None)) => self.requeue(method, &mut queue, id),
+                Some((id, Some(proposal))) => {
                     if self.counters.collapses.is_multiple_of(REPORT_EVERY) {
                         let done = (start - self.live.triangle_count()) as u64;
                         progress.step("collapse", done, total)?;
@@ -209,7 +181,7 @@ impl Engine {
         match estimates.and_then(|sums| sums.estimate(&self.live, id)) {
             Some(cost) => {
                 self.counters.estimates += 1;
-                queue.defer(&self.live, id, cost);
+                queue.estimate(&self.live, id, cost, true);
             }
             None if self.plan.rough_first => {
                 self.refresh(method, queue, &[id], Evaluation::Rough);
@@ -282,7 +254,7 @@ impl Engine {
             touched.retain(|&e| match sums.estimate(live, e) {
                 Some(cost) => {
                     self.counters.estimates += 1;
-                    queue.expect(live, e, cost);
+                    queue.estimate(live, e, cost, false);
                     false
                 }
                 None => true,
@@ -350,5 +322,42 @@ impl Engine {
             self.counters.refusals.add(refusal);
         }
         queue.evaluated(&self.live, id, outcome.ok(), how);
+    }
+}
+
+/// Evaluates edges of a mesh that stays as it is meanwhile. Outcomes are in the order of the edges that were asked for,
+/// and depend on no other one.
+struct Evaluator<'a> {
+    live: &'a LiveMesh,
+    method: &'a dyn Method,
+    star_limit: usize,
+    rules: Rules,
+    how: Evaluation,
+}
+
+/// Price of an edge, or the reason why it may not collapse.
+type Outcome = Result<Proposal, Refusal>;
+
+impl Evaluator<'_> {
+    /// Evaluates an edge on this thread; the star is its star afterwards, where it was gathered.
+    fn one(&self, id: u32, star: &mut EdgeStar, scratch: &mut MethodScratch) -> Outcome {
+        if self.is_crowded(id) {
+            return Err(Refusal::Valence);
+        }
+        if !star.gather(self.live, id) {
+            return Err(Refusal::Unplaced);
+        }
+        let site = Site {
+            accuracy: self.how,
+            ..Site::new(self.live, star, self.rules)?
+        };
+        self.method.propose(&site, scratch)
+    }
+
+    /// True where more faces touch an edge than may; those at both ends count twice.
+    fn is_crowded(&self, id: u32) -> bool {
+        let valence = |[u, w]: [u32; 2]| self.live.valence(u) + self.live.valence(w);
+        let limit = self.star_limit;
+        self.live.edge(id).map(valence).is_some_and(|n| n > limit)
     }
 }

@@ -1,9 +1,10 @@
-//! The queue: the state of every edge between evaluations.
+//! The queue: an indexed heap of the edges by their keys, and the state of every edge between evaluations.
+
+use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Heap, Key};
-use crate::collapse::{Evaluation, LiveMesh, Proposal};
+use crate::collapse::{Evaluation, LiveMesh, NONE, Proposal};
 
 /// Time at which an edge whose star changed is evaluated again, roughly where the method's plan says so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,14 +43,6 @@ pub(super) struct Queue {
     round: u32,
 }
 
-/// The edge at the front.
-pub(super) enum Front {
-    /// Its star changed since it was evaluated, or the evaluation was rough.
-    Stale(u32),
-    /// The next collapse.
-    Ready(u32, Proposal),
-}
-
 impl Queue {
     /// A queue of edges that were evaluated, and of edges that were only estimated.
     pub(super) fn new(
@@ -65,37 +58,35 @@ impl Queue {
             proposals: vec![None; ids],
             ..Self::default()
         };
-        let queued = |waits: bool| Mark {
-            round: 0,
-            dirty: waits,
-            queued: true,
-            estimated: waits,
-        };
         let mut entries = Vec::with_capacity(evaluated.len() + estimated.len());
-        for (id, proposal) in evaluated {
-            if let Some(key) = key(live, id, &proposal) {
-                queue.proposals[id as usize] = Some(proposal);
-                queue.marks[id as usize] = queued(rough);
-                entries.push((key, id));
-            }
-        }
-        for (id, cost) in estimated {
-            if let Some(key) = estimated_key(live, id, cost) {
-                queue.marks[id as usize] = queued(true);
-                entries.push((key, id));
-            }
+        let evaluated = evaluated
+            .into_iter()
+            .map(|(id, p)| (id, key(live, id, &p), Some(p)));
+        let estimated = estimated
+            .into_iter()
+            .map(|(id, cost)| (id, estimated_key(live, id, cost), None));
+        for (id, key, proposal) in evaluated.chain(estimated) {
+            let Some(key) = key else { continue };
+            let waits = rough || proposal.is_none();
+            queue.proposals[id as usize] = proposal;
+            queue.marks[id as usize] = Mark {
+                round: 0,
+                dirty: waits,
+                queued: true,
+                estimated: waits,
+            };
+            entries.push((key, id));
         }
         queue.heap = Heap::of(entries);
         queue
     }
 
-    /// The edge with the smallest key; it stays in the queue.
-    pub(super) fn front(&mut self) -> Option<Front> {
+    /// The edge with the smallest key, which stays in the queue, and its proposal where it may be collapsed; without one
+    /// its star changed since it was evaluated, or the evaluation was rough.
+    pub(super) fn front(&self) -> Option<(u32, Option<Proposal>)> {
         let (_, id) = self.heap.peek()?;
-        Some(match self.proposals[id as usize] {
-            Some(proposal) if !self.marks[id as usize].dirty => Front::Ready(id, proposal),
-            _ => Front::Stale(id),
-        })
+        let dirty = self.marks[id as usize].dirty;
+        Some((id, self.proposals[id as usize].filter(|_| !dirty)))
     }
 
     /// Records the outcome of an evaluation; after a rough one the edge waits for an exact one.
@@ -157,46 +148,30 @@ impl Queue {
 
     /// Of the `count` edges in front, those that wait under an estimate; the first of all must be one.
     pub(super) fn estimated_in_front(&mut self, count: usize) -> Vec<u32> {
-        let mut front = Vec::with_capacity(count);
-        while front.len() < count {
-            let Some(entry) = self.heap.pop() else { break };
-            front.push(entry);
-        }
+        let pops = std::iter::from_fn(|| self.heap.pop());
+        let mut front: Vec<(Key, u32)> = pops.take(count).collect();
         for &(key, id) in &front {
             self.heap.set(id, key);
         }
-        let mark = |id: u32| self.marks[id as usize];
-        let ids = front.into_iter().map(|(_, id)| id);
-        ids.enumerate()
-            .filter(|&(i, id)| i == 0 || (mark(id).dirty && mark(id).estimated))
-            .map(|(_, id)| id)
-            .collect()
+        let waits = |id: u32| self.marks[id as usize].dirty && self.marks[id as usize].estimated;
+        let first = front[0].1;
+        front.retain(|&(_, id)| id == first || waits(id));
+        front.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// A stale edge costs about `cost`. Where that is more than it waits under, it goes on waiting there: it is
-    /// estimated again at the front.
-    pub(super) fn expect(&mut self, live: &LiveMesh, id: u32, cost: f64) {
+    /// A stale edge costs about `cost`: it waits under that. Where it waits under less it goes on waiting there, to be
+    /// estimated again at the front, unless it `is_front`.
+    pub(super) fn estimate(&mut self, live: &LiveMesh, id: u32, cost: f64, is_front: bool) {
         self.grow(id);
         let Some(key) = estimated_key(live, id, cost) else {
             return;
         };
-        if !self.marks[id as usize].queued || self.heap.key(id).is_none_or(|old| key < old) {
-            self.wait(id, key);
-        }
-    }
-
-    /// A stale edge at the front costs about `cost`: it goes where that belongs.
-    pub(super) fn defer(&mut self, live: &LiveMesh, id: u32, cost: f64) {
-        if let Some(key) = estimated_key(live, id, cost) {
-            self.wait(id, key);
-        }
-    }
-
-    fn wait(&mut self, id: u32, key: Key) {
         let mark = &mut self.marks[id as usize];
-        mark.queued = true;
-        mark.estimated = true;
-        self.heap.set(id, key);
+        if is_front || !mark.queued || self.heap.key(id).is_none_or(|old| key < old) {
+            mark.queued = true;
+            mark.estimated = true;
+            self.heap.set(id, key);
+        }
     }
 
     /// Forgets an edge whose id is no longer in use.
@@ -244,4 +219,177 @@ fn estimated_key(live: &LiveMesh, id: u32, cost: f64) -> Option<Key> {
         length2: d.dot(d),
         edge,
     })
+}
+
+/// Order of the queue: total, and independent of everything but the mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// First key of the method, an exact integer.
+    pub primary: i64,
+    /// Second key of the method; integers tie massively.
+    pub secondary: f64,
+    /// Squared length of the edge; flat areas cost 0.
+    pub length2: f64,
+    /// The vertices of the edge, the smaller first.
+    pub edge: [u32; 2],
+}
+
+impl Key {
+    /// Before every key of an evaluated edge: whoever has it is evaluated next.
+    pub const fn first(edge: [u32; 2]) -> Self {
+        Self {
+            primary: i64::MIN,
+            secondary: f64::NEG_INFINITY,
+            length2: 0.0,
+            edge,
+        }
+    }
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.primary
+            .cmp(&other.primary)
+            .then_with(|| self.secondary.total_cmp(&other.secondary))
+            .then_with(|| self.length2.total_cmp(&other.length2))
+            .then_with(|| self.edge.cmp(&other.edge))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Key {}
+
+/// Children of a node: four make the heap half as deep as two, and siblings share cache lines.
+const ARITY: usize = 4;
+
+/// A 4-ary heap of `(key, id)` with the place of every id. Keys of different ids must differ.
+#[derive(Clone, Debug, Default)]
+pub struct Heap {
+    nodes: Vec<(Key, u32)>,
+    places: Vec<u32>,
+}
+
+impl Heap {
+    /// A heap of the given entries; O(n). An id that repeats is an error of the caller: the last one counts.
+    pub fn of(entries: Vec<(Key, u32)>) -> Self {
+        let ids = entries.iter().map(|&(_, id)| id as usize + 1).max();
+        let mut heap = Self {
+            places: vec![NONE; ids.unwrap_or(0)],
+            nodes: entries,
+        };
+        for (i, &(_, id)) in heap.nodes.iter().enumerate() {
+            heap.places[id as usize] = i as u32;
+        }
+        if heap.nodes.len() > 1 {
+            for i in (0..=(heap.nodes.len() - 2) / ARITY).rev() {
+                heap.sink(i);
+            }
+        }
+        heap
+    }
+
+    /// The smallest key and its id.
+    pub fn peek(&self) -> Option<(Key, u32)> {
+        self.nodes.first().copied()
+    }
+
+    /// The key of an id; `None` where it is not in the heap.
+    pub fn key(&self, id: u32) -> Option<Key> {
+        let place = self.place(id)?;
+        Some(self.nodes[place].0)
+    }
+
+    /// Puts an id into the heap, or gives it a new key; O(log n).
+    pub fn set(&mut self, id: u32, key: Key) {
+        if let Some(place) = self.place(id) {
+            self.nodes[place].0 = key;
+            self.settle(place);
+            return;
+        }
+        if self.places.len() <= id as usize {
+            self.places.resize(id as usize + 1, NONE);
+        }
+        self.places[id as usize] = self.nodes.len() as u32;
+        self.nodes.push((key, id));
+        self.rise(self.nodes.len() - 1);
+    }
+
+    /// Takes an id out and returns its key; `None` where it is not in the heap. O(log n).
+    pub fn remove(&mut self, id: u32) -> Option<Key> {
+        let place = self.place(id)?;
+        let (key, _) = self.nodes.swap_remove(place);
+        self.places[id as usize] = NONE;
+        if place < self.nodes.len() {
+            self.places[self.nodes[place].1 as usize] = place as u32;
+            self.settle(place);
+        }
+        Some(key)
+    }
+
+    /// Takes out the smallest; O(log n).
+    pub fn pop(&mut self) -> Option<(Key, u32)> {
+        let (key, id) = self.peek()?;
+        self.remove(id);
+        Some((key, id))
+    }
+
+    fn place(&self, id: u32) -> Option<usize> {
+        let place = *self.places.get(id as usize)?;
+        (place != NONE).then_some(place as usize)
+    }
+
+    fn settle(&mut self, place: usize) {
+        if !self.rise(place) {
+            self.sink(place);
+        }
+    }
+
+    fn rise(&mut self, mut place: usize) -> bool {
+        let start = place;
+        let node = self.nodes[place];
+        while place > 0 {
+            let parent = (place - 1) / ARITY;
+            if self.nodes[parent].0 <= node.0 {
+                break;
+            }
+            self.put(place, self.nodes[parent]);
+            place = parent;
+        }
+        self.put(place, node);
+        place != start
+    }
+
+    fn sink(&mut self, mut place: usize) {
+        let node = self.nodes[place];
+        loop {
+            let first = ARITY * place + 1;
+            let last = (first + ARITY).min(self.nodes.len());
+            let Some(child) = (first..last).min_by(|&a, &b| self.nodes[a].0.cmp(&self.nodes[b].0))
+            else {
+                break;
+            };
+            if node.0 <= self.nodes[child].0 {
+                break;
+            }
+            self.put(place, self.nodes[child]);
+            place = child;
+        }
+        self.put(place, node);
+    }
+
+    fn put(&mut self, place: usize, node: (Key, u32)) {
+        self.nodes[place] = node;
+        self.places[node.1 as usize] = place as u32;
+    }
 }

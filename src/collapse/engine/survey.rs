@@ -1,9 +1,11 @@
-//! Evaluations of all edges: for the first queue, for the rules that block what is left, and for ranks.
+//! Evaluations of many edges in parallel: for the first queue, for the rules that block what is left, and for ranks.
 
-use super::{Engine, evaluator::Evaluator, queue, queue::Queue};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::{Engine, Evaluator, Outcome, queue, queue::Queue};
 use crate::{
     Progress, Result,
-    collapse::{Evaluation, Method, Refusals},
+    collapse::{EdgeStar, Evaluation, Method, MethodScratch, Refusals},
     parallel,
 };
 
@@ -12,6 +14,47 @@ const CHUNK: usize = 1024;
 
 /// Tasks between two reports of progress.
 const TASKS: usize = 64;
+
+impl Evaluator<'_> {
+    /// Evaluates a small batch on all threads: each takes the next edge when it is done with one.
+    pub(super) fn shared(
+        &self,
+        ids: &[u32],
+        pool: &mut Vec<(EdgeStar, MethodScratch)>,
+    ) -> Vec<Outcome> {
+        let threads = parallel::threads().min(ids.len());
+        while pool.len() < threads {
+            pool.push(Default::default());
+        }
+        let next = AtomicUsize::new(0);
+        let outcomes = parallel::map_mut(&mut pool[..threads], |_, (star, scratch)| {
+            let mut outcomes = Vec::new();
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                let Some(&id) = ids.get(i) else {
+                    return outcomes;
+                };
+                outcomes.push((i, self.one(id, star, scratch)));
+            }
+        });
+        let mut outcomes: Vec<(usize, Outcome)> = outcomes.into_iter().flatten().collect();
+        outcomes.sort_unstable_by_key(|(i, _)| *i);
+        outcomes.into_iter().map(|(_, outcome)| outcome).collect()
+    }
+
+    /// Evaluates many edges in parallel, `per_task` in a task.
+    pub(super) fn all(&self, ids: &[u32], per_task: usize) -> Vec<Outcome> {
+        let per_task = per_task.max(1);
+        parallel::collect(ids.len().div_ceil(per_task), 1, |tasks, outcomes| {
+            let (mut star, mut scratch) = (EdgeStar::default(), MethodScratch::default());
+            let ids = &ids[tasks.start * per_task..ids.len().min(tasks.end * per_task)];
+            outcomes.reserve_exact(ids.len());
+            for &id in ids {
+                outcomes.push(self.one(id, &mut star, &mut scratch));
+            }
+        })
+    }
+}
 
 impl Engine {
     /// Evaluates every edge, block by block, so that the user hears of it and can stop it.

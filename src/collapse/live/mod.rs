@@ -4,13 +4,10 @@
 //! whoever sums over them sorts by id first ([`EdgeStar`](super::EdgeStar) does). Nothing is assumed about manifoldness: an
 //! edge counts its faces.
 
-mod commit;
 mod incidence;
-mod links;
 
 use glam::DVec3;
 
-pub use self::commit::Changes;
 use self::incidence::IncidenceLists;
 use super::{PatchFace, wedge::WedgeRows};
 use crate::{
@@ -50,7 +47,7 @@ pub struct LiveMesh {
     edges: Vec<EdgeRecord>,
     free_edges: Vec<u32>,
     edges_at: IncidenceLists<Incident>,
-    locked: Vec<bool>,
+    pub(super) locked: Vec<bool>,
     /// Vertices whose faces are not all here, where there are any; see [`super::tiles`].
     frozen: Vec<bool>,
     pub(super) rows: WedgeRows,
@@ -246,11 +243,6 @@ impl LiveMesh {
         !self.frozen.is_empty() && ends.iter().any(|&v| self.frozen[v as usize])
     }
 
-    /// True where nothing but positions and triangles matters: no attributes, no borders of materials, no locks.
-    pub(super) fn is_plain(&self) -> bool {
-        !self.may_have_features && self.wedges.is_empty() && !self.locked.contains(&true)
-    }
-
     /// Locks or unlocks a vertex. A locked vertex keeps its position and survives every collapse as a place.
     ///
     /// # Panics
@@ -335,5 +327,67 @@ impl LiveMesh {
             corners: self.faces[id as usize],
             wedges: self.wedges(id),
         }
+    }
+}
+
+/// # Upkeep of the incidence lists, face by face
+impl LiveMesh {
+    pub(super) fn link_face(&mut self, id: u32, corners: [u32; 3]) {
+        self.faces[id as usize] = corners;
+        for v in corners {
+            self.faces_at.push(v, id);
+        }
+        self.live += 1;
+    }
+
+    /// Gives a face other corners.
+    pub(super) fn relink_face(&mut self, id: u32, old: [u32; 3], new: [u32; 3]) {
+        self.faces[id as usize] = new;
+        for (old, new) in old.into_iter().zip(new).filter(|(old, new)| old != new) {
+            self.faces_at.remove(old, id);
+            self.faces_at.push(new, id);
+        }
+    }
+
+    pub(super) fn unlink_face(&mut self, id: u32) {
+        for v in self.faces[id as usize] {
+            self.faces_at.remove(v, id);
+        }
+        self.faces[id as usize] = [NONE; 3];
+        self.live -= 1;
+    }
+
+    pub(super) fn add_side(&mut self, a: u32, b: u32, created: &mut Vec<u32>) {
+        if let Some(e) = self.find_edge(a, b) {
+            self.edges[e as usize].faces += 1;
+            return;
+        }
+        let ends = [a.min(b), a.max(b)];
+        let record = EdgeRecord { ends, faces: 1 };
+        let id = self.free_edges.pop().unwrap_or(self.edges.len() as u32);
+        match self.edges.get_mut(id as usize) {
+            Some(free) => *free = record,
+            None => self.edges.push(record),
+        }
+        for (v, other) in [(a, b), (b, a)] {
+            self.edges_at.push(v, Incident { other, edge: id });
+        }
+        created.push(id);
+    }
+
+    pub(super) fn remove_side(&mut self, a: u32, b: u32, deleted: &mut Vec<u32>) {
+        let Some(id) = self.find_edge(a, b) else {
+            return;
+        };
+        self.edges[id as usize].faces -= 1;
+        if self.edges[id as usize].faces > 0 {
+            return;
+        }
+        for (v, other) in [(a, b), (b, a)] {
+            self.edges_at.remove(v, Incident { other, edge: id });
+        }
+        self.edges[id as usize].ends = [NONE; 2];
+        self.free_edges.push(id);
+        deleted.push(id);
     }
 }

@@ -80,3 +80,10 @@ fn split(live: &LiveMesh, ids: &mut [u32], most: usize, first: f64, boxes: &mut 
     boxes.append(&mut more);
     boxes.append(&mut rest);
 }
+
+impl LiveMesh {
+    /// True where nothing but positions and triangles matters: no attributes, no borders of materials, no locks.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.may_have_features() && self.wedges.is_empty() && !self.locked.contains(&true)
+    }
+}

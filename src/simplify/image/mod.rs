@@ -21,7 +21,6 @@ mod preset;
 mod reference_images;
 mod report;
 mod run;
-mod scene_edit;
 
 pub use distance_penalty::DistancePenalty;
 pub use fallback::Comparison;

@@ -9,14 +9,13 @@
 //! the rules forbid, the best of midpoint and ends (measured on the dragon at 8,190 triangles: 2 % less mean distance
 //! than giving the edge up, and a fifth fewer evaluations). Costs have the dimension length^6, in frame units.
 
-mod constraints;
 mod method;
 mod objective;
 mod options;
 mod run;
 mod vertex_sums;
 
-pub use method::{Memoryless, propose};
-pub use objective::{Objective, Placement};
+pub use method::Memoryless;
+pub use objective::{Objective, Placement, propose};
 pub use options::{ConstraintOrder, MemorylessOptions};
 pub(super) use run::{distance_rules, volume_rules};

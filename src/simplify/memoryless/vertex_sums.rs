@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::{MemorylessOptions, Objective, constraints::Gradient};
+use super::{MemorylessOptions, Objective, objective::Gradient};
 use crate::{
     collapse::{LiveMesh, Patch, legality::STAR_LIMIT},
     geometry::{self, Sym3},

@@ -357,9 +357,12 @@ proptest! {
                     prop_assert_eq!(heap.pop(), expected);
                 }
             }
-            prop_assert_eq!(heap.len(), model.len());
             prop_assert_eq!(heap.peek(), model.iter().min().copied());
             prop_assert_eq!(heap.key(id), model.iter().find(|(_, i)| *i == id).map(|e| e.0));
+        }
+        model.sort_unstable();
+        for expected in model.into_iter().map(Some).chain([None]) {
+            prop_assert_eq!(heap.pop(), expected);
         }
     }
 }

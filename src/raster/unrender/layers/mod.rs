@@ -7,7 +7,6 @@
 //! see much the same, and every part should have as much to do for a change as any other.
 
 mod fragment_lists;
-mod hi_z;
 mod probe;
 mod projected;
 mod view;

@@ -3,8 +3,7 @@
 use super::{
     super::{Model, SceneEdit, scene_edit::EditedFace},
     Part, Screens,
-    fragment_lists::{FragmentLists, TILE},
-    hi_z::HiZ,
+    fragment_lists::{FragmentLists, HiZ, TILE},
 };
 use crate::{
     num::fixed::level,
