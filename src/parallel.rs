@@ -291,23 +291,15 @@ pub(crate) fn map_vec<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync
 
 /// The sum of `f(i, item)` over all items.
 pub(crate) fn sum_mut<T: Send>(items: &mut [T], f: &(dyn Fn(usize, &mut T) -> i64 + Sync)) -> i64 {
-    sum_halves(items, 0, f)
-}
-
-fn sum_halves<T: Send>(
-    items: &mut [T],
-    first: usize,
-    f: &(dyn Fn(usize, &mut T) -> i64 + Sync),
-) -> i64 {
     match items {
         [] => 0,
-        [item] => f(first, item),
+        [item] => f(0, item),
         _ => {
             let half = items.len() / 2;
             let (left, right) = items.split_at_mut(half);
             let (mut a, mut b) = (0, 0);
-            both(&mut || a = sum_halves(left, first, f), &mut || {
-                b = sum_halves(right, first + half, f)
+            both(&mut || a = sum_mut(left, f), &mut || {
+                b = sum_mut(right, &|i, item| f(half + i, item))
             });
             a + b
         }

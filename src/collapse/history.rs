@@ -119,6 +119,17 @@ impl History {
     }
 }
 
+impl History {
+    /// Adds a record whose part of the other arrays ends where they end.
+    pub(super) fn push(&mut self, record: Record) {
+        self.records.push(Stored {
+            record,
+            corners_end: self.corners.len(),
+            rows_end: self.rows.len(),
+        });
+    }
+}
+
 /// Writes a history while an engine runs.
 #[derive(Clone, Debug)]
 pub struct Recorder {
@@ -147,7 +158,7 @@ impl Recorder {
 
     /// The history, with the resolved options of the run (JSON).
     pub fn finish(self, options: String) -> History {
-        let Self { mut history } = self;
+        let mut history = self.history;
         history.header.options = options;
         history
     }
@@ -172,19 +183,11 @@ impl Observer for Recorder {
             }
             history.rows.extend_from_slice(&patch.rows);
         }
-        history.records.push(Stored {
-            record,
-            corners_end: history.corners.len(),
-            rows_end: history.rows.len(),
-        });
+        history.push(record);
     }
 
     fn collapsed_in_tile(&mut self, live: &LiveMesh, keep: u32, gone: u32, to: DVec3) {
         let to = live.frame().leave(to);
-        self.history.records.push(Stored {
-            record: Record::Collapse { keep, gone, to },
-            corners_end: self.history.corners.len(),
-            rows_end: self.history.rows.len(),
-        });
+        self.history.push(Record::Collapse { keep, gone, to });
     }
 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::{
     History,
-    history::{Header, Record, Stored},
+    history::{Header, Record},
 };
 use crate::{
     Error, Result,
@@ -43,10 +43,7 @@ impl History {
         out.extend(h.frame.exponent.to_le_bytes());
         out.extend(h.stride.to_le_bytes());
         out.extend((self.records.len() as u64).to_le_bytes());
-        for index in 0..self.records.len() {
-            let Some(entry) = self.entry(index) else {
-                break;
-            };
+        for entry in (0..self.records.len()).filter_map(|index| self.entry(index)) {
             let (kind, vertices, to) = match entry.record {
                 Record::Collapse { keep, gone, to } => (COLLAPSE, vec![keep, gone], Some(to)),
                 Record::Move { vertex, to } => (MOVE, vec![vertex], Some(to)),
@@ -149,11 +146,7 @@ impl History {
                     .push(if value.is_nan() { f64::NAN } else { value });
             }
         }
-        self.records.push(Stored {
-            record,
-            corners_end: self.corners.len(),
-            rows_end: self.rows.len(),
-        });
+        self.push(record);
         Ok(())
     }
 }

@@ -195,21 +195,18 @@ fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
         return Ok(Anchor::Free);
     }
     let degree = star.feature_degree;
-    let corner = degree.each(|d| d != 0 && d != 2);
-    if star.edge_feature {
-        match corner {
-            [false, false] => Ok(Anchor::Free),
-            [true, false] => Ok(Anchor::At(0)),
-            [false, true] => Ok(Anchor::At(1)),
-            [true, true] => Err(Refusal::FeatureCorner),
-        }
+    // Along a feature only its ends and branchings stay, beside one all that lies on it.
+    let (stays, refusal) = if star.edge_feature {
+        let corner = degree.each(|d| d != 0 && d != 2);
+        (corner, Refusal::FeatureCorner)
     } else {
-        match degree.each(|d| d > 0) {
-            [false, false] => Ok(Anchor::Free),
-            [true, false] => Ok(Anchor::At(0)),
-            [false, true] => Ok(Anchor::At(1)),
-            [true, true] => Err(Refusal::FeaturePinch),
-        }
+        (degree.each(|d| d > 0), Refusal::FeaturePinch)
+    };
+    match stays {
+        [false, false] => Ok(Anchor::Free),
+        [true, false] => Ok(Anchor::At(0)),
+        [false, true] => Ok(Anchor::At(1)),
+        [true, true] => Err(refusal),
     }
 }
 

@@ -132,7 +132,8 @@ impl<'a> Replay<'a> {
 
     /// Takes the last record back; false at the input.
     pub fn back(&mut self) -> bool {
-        let start = self.faces_start();
+        let before = self.undo.len().checked_sub(2);
+        let start = before.map_or(0, |i| self.undo[i].faces_end);
         let Some(undo) = self.undo.pop() else {
             return false;
         };
@@ -141,11 +142,6 @@ impl<'a> Replay<'a> {
             .revert(removed, undo.moved, undo.row_values, &mut self.changes);
         self.faces.truncate(start);
         true
-    }
-
-    fn faces_start(&self) -> usize {
-        let before = self.undo.len().checked_sub(2);
-        before.map_or(0, |i| self.undo[i].faces_end)
     }
 
     /// Makes the patch of a record, or says what is wrong with it.

@@ -132,10 +132,7 @@ pub fn collapse_in_tiles(
             counters.add(&tile.counters);
         }
         let removed: usize = tiles.iter().map(|t| t.removed).sum();
-        let mut order: Vec<TileCollapse> = Vec::new();
-        for tile in &tiles {
-            order.extend_from_slice(&tile.collapses);
-        }
+        let mut order: Vec<_> = tiles.iter().flat_map(|t| &t.collapses).copied().collect();
         // Stable: tiles in their order, and every tile in its own.
         parallel::sort_stable_by(&mut order, |a, b| a.cost.total_cmp(&b.cost));
         if before - removed < triangles {

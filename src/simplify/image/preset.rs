@@ -114,36 +114,17 @@ impl ImageOptions {
                 *own = new;
             }
         }
+        macro_rules! follow {
+            ($own:expr, $old:expr, $new:expr; $($field:ident)+) => {
+                $(keep(&mut $own.$field, $old.$field, $new.$field);)+
+            };
+        }
         let (old, new) = (self.preset.shaded(self.shading), preset.shaded(shading));
         (self.preset, self.shading) = (preset, shading);
-        keep(&mut self.views, old.views, new.views);
-        keep(&mut self.size, old.size, new.size);
-        keep(&mut self.samples, old.samples, new.samples);
-        keep(&mut self.specular, old.specular, new.specular);
-        keep(
-            &mut self.interior_views,
-            old.interior_views,
-            new.interior_views,
-        );
-        keep(&mut self.start, old.start, new.start);
-        keep(&mut self.engine, old.engine, new.engine);
-        keep(&mut self.placement, old.placement, new.placement);
-        keep(&mut self.swept_weight, old.swept_weight, new.swept_weight);
-        keep(&mut self.view_stride, old.view_stride, new.view_stride);
-        keep(&mut self.fall_back, old.fall_back, new.fall_back);
-        let (polish, old, new) = (&mut self.polish, old.polish, new.polish);
-        keep(&mut polish.sweeps, old.sweeps, new.sweeps);
-        keep(&mut polish.flips_every, old.flips_every, new.flips_every);
-        keep(
-            &mut polish.cameras_every,
-            old.cameras_every,
-            new.cameras_every,
-        );
-        keep(
-            &mut polish.deviation_weight,
-            old.deviation_weight,
-            new.deviation_weight,
-        );
+        follow!(self, old, new; views size samples specular interior_views start engine placement);
+        follow!(self, old, new; swept_weight view_stride fall_back);
+        let (own, old, new) = (&mut self.polish, old.polish, new.polish);
+        follow!(own, old, new; sweeps flips_every cameras_every deviation_weight);
     }
 }
 

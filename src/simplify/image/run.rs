@@ -1,13 +1,12 @@
 //! An image-driven run: memoryless down to its start, then by images, then polished and held against geometry.
 
 use super::{
-    HeldOutViews, ImageDriven, ImageOptions, ImageReport, Limits, OriginalModel, PictureScratch,
-    Pictures, PolishCounters, Size, Start, fallback::Contest, polish,
+    ImageDriven, ImageOptions, ImageReport, Limits, OriginalModel, PictureScratch, Pictures,
+    PolishCounters, Size, Start, fallback::Contest, polish,
 };
 use crate::{
     Progress, Result,
     collapse::{LiveMesh, Observer, Patch, Recorder, Rules, Schedule, Tiling},
-    mesh::Mesh,
     parallel,
     simplify::{
         Outcome, Report,
@@ -72,10 +71,15 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     }
     .into();
     // (2) Collapses by images.
-    let contest = match original.take_held_out() {
-        Some(held_out) => Some(contest(own, held_out, mesh, &run.live)?),
-        None => None,
+    let contest = |held_out| -> Result<_> {
+        Ok(Contest {
+            own,
+            held_out,
+            mesh,
+            start: run.live.to_mesh()?,
+        })
     };
+    let contest = original.take_held_out().map(contest).transpose()?;
     let sum = method.pictures().sum() as f64;
     let deviation = original.deviation(&run.live, own.swept_weight);
     let price = deviation.map_or(0.0, |d| d.price(sum));
@@ -126,20 +130,6 @@ fn approach(own: &ImageOptions, start: usize, run: &mut Run<'_>) -> Result<Origi
     let (collapsed, drawn) = parallel::join(queue, draw);
     collapsed?;
     drawn
-}
-
-fn contest<'a>(
-    own: &'a ImageOptions,
-    held_out: HeldOutViews,
-    mesh: &'a Mesh,
-    live: &LiveMesh,
-) -> Result<Contest<'a>> {
-    Ok(Contest {
-        own,
-        held_out,
-        mesh,
-        start: live.to_mesh()?,
-    })
 }
 
 /// Turns faces back that collapses turned over: polishing would only keep them from getting worse. Looks at no

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use super::{Quadric, QuadricOptions, Uncertainty, Weighting};
+use super::{Quadric, QuadricOptions, Weighting};
 use crate::{
     collapse::{
         Estimates, LiveMesh, Method, MethodScratch, Patch, Proposal, Refusal, Site, Tileable,
@@ -29,10 +29,7 @@ impl QuadricMethod {
         factor: impl Fn(u32) -> f64,
     ) -> Self {
         let mut quadrics = vec![Quadric::default(); live.vertex_ids() as usize];
-        let deviation = options.uncertainty.unwrap_or(Uncertainty {
-            normal: 0.0,
-            position: 0.0,
-        });
+        let deviation = options.uncertainty.unwrap_or_default();
         let position = if deviation.position > 0.0 {
             deviation.position * mean_edge(live)
         } else {
@@ -56,16 +53,11 @@ impl QuadricMethod {
             }
             for k in 0..3 {
                 let (s, e) = (corners[k], corners[(k + 1) % 3]);
-                let alone = live
-                    .find_edge(s, e)
-                    .is_some_and(|e| live.faces_at_edge(e) == 1);
+                let edge = live.find_edge(s, e);
+                let alone = edge.is_some_and(|e| live.faces_at_edge(e) == 1);
                 let along = points[(k + 1) % 3] - points[k];
-                if !alone {
-                    continue;
-                }
-                let Some(m) = math::unit(along.cross(unit)) else {
-                    continue;
-                };
+                let wall = alone.then(|| math::unit(along.cross(unit)));
+                let Some(m) = wall.flatten() else { continue };
                 let weight = match options.weighting {
                     Weighting::Unit => options.boundary_weight,
                     Weighting::Area => options.boundary_weight * along.dot(along),

@@ -14,7 +14,7 @@ pub enum Weighting {
 }
 
 /// Uncertainty of planes (Trettner & Kobbelt 2020); makes every minimum unique.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Standard deviation of unit normals.
     pub normal: f64,

@@ -31,13 +31,10 @@ impl VisibilityMethod {
                 live.triangle_ids()
             )));
         }
-        if let Some((t, v)) = (0..)
-            .zip(visibility)
-            .find(|(_, v)| !(0.0..=1.0).contains(*v))
-            .map(|(t, v): (usize, _)| (t, v))
-        {
+        if let Some(t) = visibility.iter().position(|v| !(0.0..=1.0).contains(v)) {
             return Err(Error::Usage(format!(
-                "the visibility of triangle {t} is {v}; expected a number from 0 to 1"
+                "the visibility of triangle {t} is {}; expected a number from 0 to 1",
+                visibility[t]
             )));
         }
         Ok(Self {

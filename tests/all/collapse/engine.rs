@@ -11,12 +11,11 @@ use lodmark::{
     },
     mesh::Mesh,
     num::Frame,
-    simplify::{Options, Stop, Target, simplify},
-    view::frame_of,
+    simplify::{Options, Stop, Target, memoryless::Memoryless, simplify},
 };
 use proptest::prelude::*;
 
-use crate::support::{Random, meshes, same_on_all_threads};
+use crate::support::{Random, collapse, live, meshes, same_on_all_threads};
 
 /// Places at random on the edge and prices at random: reaches states that a sensible method never would.
 pub(crate) struct Dice(pub(crate) u64);
@@ -49,11 +48,8 @@ impl Rough {
         let mut random = Random(self.seed ^ u64::from(u) << 32 ^ u64::from(w));
         random.unit();
         let price = (random.next() % 7) as i64 - 3;
-        let length = self.off.end - self.off.start;
-        [
-            price,
-            self.off.start + (random.next() % length as u64) as i64,
-        ]
+        let length = (self.off.end - self.off.start) as u64;
+        [price, self.off.start + (random.next() % length) as i64]
     }
 }
 
@@ -128,10 +124,10 @@ pub(crate) fn assert_consistent(live: &LiveMesh) {
         let mut found: Vec<u32> = live.triangles_at(v).collect();
         found.sort_unstable();
         assert_eq!(found, at.get(&v).cloned().unwrap_or_default(), "vertex {v}");
-        let edges: BTreeSet<[u32; 2]> = live
+        let edges = live
             .edges_at(v)
-            .map(|e| live.edge(e).expect("a listed edge is in use"))
-            .collect();
+            .map(|e| live.edge(e).expect("a listed edge is in use"));
+        let edges: BTreeSet<[u32; 2]> = edges.collect();
         assert_eq!(
             edges.len(),
             live.edges_at(v).count(),
@@ -183,25 +179,17 @@ pub(crate) fn groups(count: usize, linked: impl Fn(usize, usize) -> bool) -> usi
 }
 
 fn boundary_loops(triangles: &[[u32; 3]]) -> usize {
-    let edges: Vec<[u32; 2]> = edge_counts(triangles.iter().copied())
-        .into_iter()
-        .filter_map(|(e, count)| (count == 1).then_some(e))
-        .collect();
+    let edges = edge_counts(triangles.iter().copied()).into_iter();
+    let edges: Vec<[u32; 2]> = edges.filter_map(|(e, n)| (n == 1).then_some(e)).collect();
     groups(edges.len(), |i, j| {
         edges[i].iter().any(|v| edges[j].contains(v))
     })
 }
 
 fn duplicates(triangles: &[[u32; 3]]) -> usize {
-    let sets: BTreeSet<[u32; 3]> = triangles
-        .iter()
-        .map(|&t| {
-            let mut t = t;
-            t.sort_unstable();
-            t
-        })
-        .collect();
-    triangles.len() - sets.len()
+    let mut sets = triangles.to_vec();
+    sets.iter_mut().for_each(|t| t.sort_unstable());
+    triangles.len() - sets.into_iter().collect::<BTreeSet<_>>().len()
 }
 
 fn plain(live: &LiveMesh) -> Vec<[u32; 3]> {
@@ -239,7 +227,7 @@ impl Observer for Witness {
 }
 
 fn run(mesh: &Mesh, seed: u64, topology: Topology, triangles: usize) -> (LiveMesh, Stop) {
-    let live = LiveMesh::new(mesh, frame_of(mesh));
+    let live = live(mesh);
     let rules = Rules {
         topology,
         ..Rules::default()
@@ -296,7 +284,7 @@ proptest! {
     fn the_order_of_lists_decides_nothing(kind in 0_usize..8, seed: u64, steps in 1_usize..12) {
         let mesh = meshes::any(kind, seed);
         // Collapses taken back leave the same mesh with its lists in another order.
-        let mut shuffled = LiveMesh::new(&mesh, frame_of(&mesh));
+        let mut shuffled = live(&mesh);
         let fresh = shuffled.clone();
         let (mut star, mut patch, mut changes) = (EdgeStar::default(), Patch::default(), Changes::default());
         let mut random = Random(seed);
@@ -317,7 +305,7 @@ proptest! {
         prop_assert_eq!(shuffled.to_mesh().expect("a mesh"), fresh.to_mesh().expect("a mesh"));
         let finish = |live: LiveMesh| {
             let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
-            engine.run(&mut Dice(seed), 8, &mut (), &Silent).expect("nobody interrupts");
+            collapse(&mut engine, &mut Dice(seed), 8);
             engine.into_parts().0.to_mesh().expect("a mesh")
         };
         prop_assert_eq!(finish(shuffled), finish(fresh));
@@ -382,20 +370,15 @@ fn thread_counts_give_equal_meshes_and_counters() {
 #[test]
 fn an_eager_queue_takes_the_cheapest_edge_every_time() {
     let mesh = meshes::torus(16, 10, 3);
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let mut method = lodmark::simplify::memoryless::Memoryless::default();
-    let engine = Engine::new(live, Rules::default(), Schedule::Eager);
-    let mut engine = engine.with_rank_measured(1);
-    engine
-        .run(&mut method, 60, &mut (), &Silent)
-        .expect("nobody interrupts");
-    let ranks = &engine.counters().ranks;
-    assert_eq!(ranks.len() as u64, engine.counters().collapses);
+    let live = live(&mesh);
+    let mut method = Memoryless::default();
+    let mut engine = Engine::new(live, Rules::default(), Schedule::Eager).with_rank_measured(1);
+    collapse(&mut engine, &mut method, 60);
+    let counters = engine.counters();
+    let ranks = &counters.ranks;
+    assert_eq!(ranks.len() as u64, counters.collapses);
     assert!(ranks.iter().all(|&rank| rank == 0.0), "{ranks:?}");
-    assert_eq!(
-        engine.counters().evaluations,
-        engine.counters().evaluations_if_eager
-    );
+    assert_eq!(counters.evaluations, counters.evaluations_if_eager);
 }
 
 #[test]
@@ -408,21 +391,18 @@ fn no_edge_is_collapsed_at_a_rough_price_and_cheap_rough_prices_change_no_order(
     };
     for seed in 0..20 {
         let run = |off: std::ops::Range<i64>, schedule| {
-            let live = LiveMesh::new(&mesh, frame_of(&mesh));
+            let live = live(&mesh);
             let mut method = Rough { seed, off };
             let mut exact = Exact(method.clone(), 0);
             let mut engine = Engine::new(live, rules, schedule).with_rank_measured(1);
-            engine
-                .run(&mut method, 60, &mut exact, &Silent)
-                .expect("nobody interrupts");
+            let stop = engine.run(&mut method, 60, &mut exact, &Silent);
+            stop.expect("nobody interrupts");
             let (live, counters) = engine.into_parts();
             (live.to_mesh().expect("a mesh"), counters)
         };
-        let live = LiveMesh::new(&mesh, frame_of(&mesh));
+        let live = live(&mesh);
         let mut engine = Engine::new(live, rules, Schedule::Eager).with_rank_measured(1);
-        engine
-            .run(&mut Dice(seed), 60, &mut (), &Silent)
-            .expect("nobody interrupts");
+        collapse(&mut engine, &mut Dice(seed), 60);
         let (exact, expected) = engine.into_parts();
         let exact = exact.to_mesh().expect("a mesh");
         let (cheap, counters) = run(-4..1, Schedule::Eager);
@@ -443,12 +423,10 @@ fn no_edge_is_collapsed_at_a_rough_price_and_cheap_rough_prices_change_no_order(
 #[test]
 fn a_lazy_queue_evaluates_less_and_ranks_near_the_front() {
     let mesh = meshes::torus(24, 16, 3);
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
-    let mut method = lodmark::simplify::memoryless::Memoryless::default();
+    let live = live(&mesh);
+    let mut method = Memoryless::default();
     let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy).with_rank_measured(5);
-    engine
-        .run(&mut method, 100, &mut (), &Silent)
-        .expect("nobody interrupts");
+    collapse(&mut engine, &mut method, 100);
     let counters = engine.counters();
     assert!(counters.evaluations < counters.evaluations_if_eager / 2);
     let mean = counters.ranks.iter().sum::<f64>() / counters.ranks.len() as f64;
@@ -458,16 +436,14 @@ fn a_lazy_queue_evaluates_less_and_ranks_near_the_front() {
 #[test]
 fn a_locked_vertex_stays_where_it_is() {
     let mesh = meshes::grid(8, 1);
-    let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let mut live = live(&mesh);
     let locked = [0_u32, 8, 40, 72, 80];
     for v in locked {
         live.set_locked(v, true);
     }
     let places = locked.map(|v| live.position(v));
     let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
-    engine
-        .run(&mut Dice(1), 2, &mut (), &Silent)
-        .expect("nobody interrupts");
+    collapse(&mut engine, &mut Dice(1), 2);
     let left = engine.live().to_mesh().expect("valid");
     let frame = engine.live().frame();
     for p in places {
@@ -486,11 +462,8 @@ fn a_tetrahedron_and_a_lone_triangle_are_left_alone() {
         let Stop::NoLegalCollapse { refusals: blocked } = stop else {
             panic!("{stop:?}");
         };
-        let rule = if triangles.len() == 4 {
-            Refusal::Duplicate
-        } else {
-            Refusal::LastTriangle
-        };
+        let rules = [Refusal::LastTriangle, Refusal::Duplicate];
+        let rule = rules[usize::from(triangles.len() == 4)];
         assert_eq!(blocked.count(rule), blocked.total());
     }
 }
@@ -522,10 +495,8 @@ fn a_handle_is_not_closed_and_free_topology_may_close_it() {
     // Vertices 0, 8, 16 form a cycle of three edges around the torus and no face.
     let mut star = EdgeStar::default();
     assert!(star.gather(&live, live.find_edge(0, 8).expect("an edge")));
-    assert_eq!(
-        Site::new(&live, &star, Rules::default()).err(),
-        Some(Refusal::Link)
-    );
+    let refused = Site::new(&live, &star, Rules::default()).err();
+    assert_eq!(refused, Some(Refusal::Link));
     let free = Rules {
         topology: Topology::Free,
         ..Rules::default()
@@ -548,10 +519,8 @@ fn a_sheet_with_two_sides_is_simplified_as_one() {
 
 #[test]
 fn dead_ids_and_meshes_without_attributes_have_no_wedges() {
-    let mesh = Mesh::from_triangles(
-        vec![DVec3::ZERO, DVec3::X, DVec3::Y],
-        vec![[0, 0, 1], [0, 1, 2]],
-    );
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let mesh = Mesh::from_triangles(positions, vec![[0, 0, 1], [0, 1, 2]]);
     let live = LiveMesh::new(&mesh.expect("valid"), Frame::default());
     assert_eq!(live.triangle(0), None);
     assert_eq!(live.wedges(1), [NONE; 3]);

@@ -8,7 +8,6 @@ use std::{
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
     bound::view_cell::ViewCell,
     collapse::{
         EdgeStar, Engine, LiveMesh, Method, MethodScratch, Patch, Plan, Proposal, Refusal, Rules,
@@ -20,12 +19,11 @@ use lodmark::{
         tolerance::{Distance, ToleranceOptions},
         view_bounded::ViewBoundedOptions,
     },
-    view::frame_of,
 };
 
 use crate::{
     collapse::engine::{Dice, assert_consistent, groups},
-    support::Random,
+    support::{Random, collapse, live},
 };
 
 /// `count` faces around a vertex in a plane.
@@ -98,7 +96,7 @@ fn nothing_is_missed_or_met_twice_around_two_hubs() {
     let mut seen = [0; 6];
     for seed in 0..300 {
         let mesh = tangle(seed);
-        let live = LiveMesh::new(&mesh, frame_of(&mesh));
+        let live = live(&mesh);
         let mut star = EdgeStar::default();
         assert!(star.gather(&live, live.find_edge(0, 1).expect("an edge")));
         assert!(star.faces.len() > 48, "{}", star.faces.len());
@@ -203,7 +201,7 @@ fn no_fold_around_a_hub_is_missed_or_counted_twice() {
     let mut folds = 0;
     for seed in 0..60 {
         let mesh = tangle(seed);
-        let live = LiveMesh::new(&mesh, frame_of(&mesh));
+        let live = live(&mesh);
         let (mut star, mut patch) = (EdgeStar::default(), Patch::default());
         let hubs = live.find_edge(0, 1).expect("an edge");
         // A side of its star may end at a hub that is not in it.
@@ -226,11 +224,10 @@ fn no_fold_around_a_hub_is_missed_or_counted_twice() {
 #[test]
 fn a_hub_of_thousands_loses_its_faces_without_losing_track() {
     let mesh = disc(1_100);
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let live = live(&mesh);
     let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
     for triangles in [1_060, 1_000, 480] {
-        let end = engine.run(&mut Dice(1), triangles, &mut (), &Silent);
-        end.expect("nobody interrupts");
+        collapse(&mut engine, &mut Dice(1), triangles);
         assert!(engine.live().triangle_count() <= triangles);
         assert_consistent(engine.live());
     }
@@ -258,11 +255,10 @@ impl Method for Modest {
 #[test]
 fn no_method_is_asked_about_more_faces_than_it_looks_at() {
     let mesh = disc(300);
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let live = live(&mesh);
     let mut method = Modest(AtomicUsize::new(0));
     let mut engine = Engine::new(live, Rules::default(), Schedule::Eager);
-    let stop = engine.run(&mut method, 10, &mut (), &Silent);
-    stop.expect("nobody interrupts");
+    collapse(&mut engine, &mut method, 10);
     let (live, counters) = engine.into_parts();
     let most = method.0.into_inner();
     assert!((30..=40).contains(&most), "{most}");
@@ -306,7 +302,7 @@ fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
 #[test]
 fn a_vertex_that_is_not_there_has_no_edge_to_a_hub() {
     let mesh = disc(100);
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let live = live(&mesh);
     let unknown = live.vertex_ids();
     for hub in 0..unknown {
         assert_eq!(live.find_edge(hub, unknown), None);

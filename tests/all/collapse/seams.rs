@@ -4,37 +4,35 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use lodmark::{
-    Silent,
-    collapse::{Engine, LiveMesh, Rules, Schedule, Topology},
-    mesh::{ChannelKind, Mesh},
+    collapse::{Engine, Rules, Schedule, Topology},
+    mesh::{Attributes, ChannelKind, Mesh, MeshParts},
     simplify::{Options, Stop, Target, simplify},
-    view::frame_of,
 };
 use proptest::prelude::*;
 
 use crate::{
     collapse::engine::{Dice, groups},
-    support::meshes,
+    support::{collapse, live, meshes},
 };
 
 /// Faces linked through edges at whose ends both have the same texture coordinates are one chart.
 fn charts(mesh: &Mesh) -> usize {
-    let channel = mesh.attributes().channel(ChannelKind::TexCoord(0));
-    let uv = |t: usize, v: u32| {
-        let k = mesh.triangles()[t].iter().position(|&c| c == v)?;
-        let channel = channel?;
-        let value = mesh
-            .attributes()
-            .value(channel, mesh.attributes().corners()[t][k]);
-        Some([value[0].to_bits(), value[1].to_bits()])
-    };
     groups(mesh.triangles().len(), |i, j| {
-        let shared: Vec<u32> = mesh.triangles()[i]
-            .into_iter()
-            .filter(|v| mesh.triangles()[j].contains(v))
-            .collect();
-        shared.len() == 2 && shared.iter().all(|&v| uv(i, v) == uv(j, v))
+        let mut shared = mesh.triangles()[i].to_vec();
+        shared.retain(|v| mesh.triangles()[j].contains(v));
+        shared.len() == 2 && shared.iter().all(|&v| uv(mesh, i, v) == uv(mesh, j, v))
     })
+}
+
+/// Texture coordinates of a triangle at one of its vertices; empty where there are none.
+fn uv(mesh: &Mesh, t: usize, v: u32) -> Vec<u64> {
+    let attributes = mesh.attributes();
+    let Some(channel) = attributes.channel(ChannelKind::TexCoord(0)) else {
+        return Vec::new();
+    };
+    let k = mesh.triangles()[t].iter().position(|&c| c == v);
+    let values = attributes.value(channel, attributes.corners()[t][k.expect("a corner")]);
+    values.iter().map(|x| x.to_bits()).collect()
 }
 
 /// Edges with two faces whose texture coordinates or materials differ.
@@ -45,23 +43,10 @@ fn seam_degrees(mesh: &Mesh) -> BTreeMap<u32, usize> {
             at.entry([x.min(y), x.max(y)]).or_default().push(t);
         }
     }
-    let value = |t: usize, v: u32| -> Vec<u64> {
-        let k = mesh.triangles()[t]
-            .iter()
-            .position(|&c| c == v)
-            .expect("a corner");
-        let channel = mesh.attributes().channel(ChannelKind::TexCoord(0));
-        channel.map_or(Vec::new(), |c| {
-            let values = mesh
-                .attributes()
-                .value(c, mesh.attributes().corners()[t][k]);
-            values.iter().map(|x| x.to_bits()).collect()
-        })
-    };
     let mut degrees = BTreeMap::new();
     for (edge, faces) in at {
         let [f, g] = faces[..] else { continue };
-        let differs = edge.iter().any(|&v| value(f, v) != value(g, v))
+        let differs = edge.iter().any(|&v| uv(mesh, f, v) != uv(mesh, g, v))
             || mesh.materials().of(f) != mesh.materials().of(g);
         if differs {
             for v in edge {
@@ -88,9 +73,9 @@ proptest! {
         flat: bool, seed: u64, target in 30_usize..150,
     ) {
         let mesh = meshes::textured_torus(12, 8, seed, flat);
-        let live = LiveMesh::new(&mesh, frame_of(&mesh));
+        let live = live(&mesh);
         let mut engine = Engine::new(live, Rules::default(), Schedule::Lazy);
-        engine.run(&mut Dice(seed), target, &mut (), &Silent).expect("nobody interrupts");
+        collapse(&mut engine, &mut Dice(seed), target);
         let after = engine.live().to_mesh().expect("valid");
         prop_assert!(after.triangles().len() < 160, "nearly nothing was collapsed");
         prop_assert_eq!(charts(&after), charts(&mesh));
@@ -126,14 +111,8 @@ fn charts_and_materials_of_a_cube_keep_their_corners() {
             assert_eq!(charts(&outcome.mesh), 6);
         }
         if with_materials {
-            let used: BTreeSet<u32> = outcome
-                .mesh
-                .materials()
-                .of_triangle
-                .iter()
-                .copied()
-                .collect();
-            assert_eq!(used.len(), 6);
+            let used = outcome.mesh.materials().of_triangle.iter();
+            assert_eq!(used.collect::<BTreeSet<_>>().len(), 6);
         }
     }
 }
@@ -141,16 +120,14 @@ fn charts_and_materials_of_a_cube_keep_their_corners() {
 #[test]
 fn normals_that_differ_everywhere_do_not_stop_simplification() {
     let parts = meshes::textured_torus(12, 8, 4, true).into_parts();
-    let channel = parts
-        .attributes
-        .channel(ChannelKind::Normal)
-        .expect("normals");
+    let channel = parts.attributes.channel(ChannelKind::Normal);
+    let channel = channel.expect("normals");
     let values = (0..parts.attributes.wedge_count() as u32)
         .flat_map(|w| parts.attributes.value(channel, w).to_vec())
         .collect();
     let corners = parts.attributes.corners().to_vec();
-    let attributes = lodmark::mesh::Attributes::new(&[ChannelKind::Normal], values, corners);
-    let mesh = Mesh::new(lodmark::mesh::MeshParts {
+    let attributes = Attributes::new(&[ChannelKind::Normal], values, corners);
+    let mesh = Mesh::new(MeshParts {
         attributes: attributes.expect("valid"),
         ..parts
     })
@@ -166,18 +143,15 @@ fn a_value_that_one_end_lacks_is_absent_at_the_new_vertex() {
     let values = (0..parts.triangles.len()).flat_map(|t| [absent(t), absent(t)]);
     let corners = (0..parts.triangles.len() as u32).map(|t| [t; 3]).collect();
     let kinds = [ChannelKind::TexCoord(0)];
-    parts.attributes =
-        lodmark::mesh::Attributes::new(&kinds, values.collect(), corners).expect("valid");
+    parts.attributes = Attributes::new(&kinds, values.collect(), corners).expect("valid");
     let mesh = Mesh::new(parts).expect("valid");
-    let live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let live = live(&mesh);
     let rules = Rules {
         topology: Topology::Free,
         ..Rules::default()
     };
     let mut engine = Engine::new(live, rules, Schedule::Lazy);
-    engine
-        .run(&mut Dice(3), 4, &mut (), &Silent)
-        .expect("nobody interrupts");
+    collapse(&mut engine, &mut Dice(3), 4);
     let left = engine.live().to_mesh().expect("valid");
     for w in 0..left.attributes().wedge_count() as u32 {
         let row = left.attributes().row(w);

@@ -3,8 +3,8 @@
 use lodmark::{
     Silent,
     collapse::{
-        Counters, Engine, History, LiveMesh, Recorder, Replay, Rules, Schedule, TileOptions,
-        Tileable, Tiling, collapse_in_tiles,
+        Counters, Engine, History, LiveMesh, Observer, Recorder, Replay, Rules, Schedule,
+        TileOptions, Tileable, Tiling, collapse_in_tiles,
     },
     mesh::{Mesh, canonical},
     simplify::{memoryless::Memoryless, memoryless::MemorylessOptions},
@@ -13,7 +13,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{meshes, same_on_all_threads};
+use crate::support::{live, meshes, same_on_all_threads};
 
 /// Small enough that a mesh of a few hundred triangles takes several rounds.
 const SMALL: Tiling = Tiling {
@@ -21,13 +21,21 @@ const SMALL: Tiling = Tiling {
     triangles: 60,
 };
 
-fn down_to(triangles: usize) -> TileOptions {
-    TileOptions {
+fn in_tiles(
+    live: &mut LiveMesh,
+    method: &mut dyn Tileable,
+    triangles: usize,
+    counters: &mut Counters,
+    observer: &mut dyn Observer,
+) {
+    let options = TileOptions {
         tiling: SMALL,
         rules: Rules::default(),
         schedule: Schedule::Eager,
         triangles,
-    }
+    };
+    collapse_in_tiles(live, method, options, counters, observer, &Silent)
+        .expect("nobody interrupts");
 }
 
 /// What a run leaves, and its history; how many collapses it took in tiles.
@@ -41,20 +49,17 @@ fn tiled<M: Tileable>(
     let mut method = method(&live);
     let mut recorder = Recorder::new(mesh, frame);
     let mut counters = Counters::default();
-    collapse_in_tiles(
+    in_tiles(
         &mut live,
         &mut method,
-        down_to(triangles),
+        triangles,
         &mut counters,
         &mut recorder,
-        &Silent,
-    )
-    .expect("nobody interrupts");
+    );
     let in_tiles = counters.collapses;
     let mut engine = Engine::new(live, Rules::default(), Schedule::Eager).with_counters(counters);
-    engine
-        .run(&mut method, triangles, &mut recorder, &Silent)
-        .expect("nobody interrupts");
+    let stop = engine.run(&mut method, triangles, &mut recorder, &Silent);
+    stop.expect("nobody interrupts");
     let left = engine.live().to_mesh().expect("valid");
     (left, recorder.finish(String::new()), in_tiles)
 }
@@ -113,20 +118,12 @@ fn a_mesh_with_attributes_locks_or_few_triangles_is_left_alone() {
     let small = canonical(&meshes::grid(5, 1)).mesh;
     assert_eq!(memoryless(&small, 20).2, 0);
     let mesh = shape(true, 2);
-    let mut live = LiveMesh::new(&mesh, frame_of(&mesh));
+    let mut live = live(&mesh);
     live.set_locked(3, true);
     let mut method = Memoryless::new(&live, MemorylessOptions::default());
     let place = live.position(3);
     let mut counters = Counters::default();
-    collapse_in_tiles(
-        &mut live,
-        &mut method,
-        down_to(20),
-        &mut counters,
-        &mut (),
-        &Silent,
-    )
-    .expect("nobody interrupts");
+    in_tiles(&mut live, &mut method, 20, &mut counters, &mut ());
     assert_eq!(counters, Counters::default());
     assert_eq!(live.position(3), place);
 }

@@ -20,13 +20,13 @@ fn vertex((x, y): Point, depth: u32) -> ScreenVertex {
     }
 }
 
-fn fragments(
-    corners: [ScreenVertex; 3],
-    bits: SubpixelBits,
-    region: PixelRect,
-) -> Vec<(i32, i32, u32)> {
+const IMAGE: PixelRect = PixelRect::image(64, 64);
+
+type Fragment = (i32, i32, u32);
+
+fn fragments(corners: [ScreenVertex; 3], bits: SubpixelBits, region: PixelRect) -> Vec<Fragment> {
     let mut found = Vec::new();
-    if let Some(setup) = Setup::new(corners, bits, Cull::None, PixelRect::image(64, 64)) {
+    if let Some(setup) = Setup::new(corners, bits, Cull::None, IMAGE) {
         setup.fragments(region, |x, y, z| found.push((x, y, z)));
     }
     found
@@ -43,14 +43,10 @@ fn perturbed_side(a: Point, b: Point, p: Point) -> i128 {
 
 fn oracle_covers(corners: [Point; 3], centre: Point) -> bool {
     let [a, b, c] = corners;
-    if (b.0 - a.0) * (c.1 - a.1) == (b.1 - a.1) * (c.0 - a.0) {
+    if area(corners) == 0 {
         return false;
     }
-    let sides = [
-        perturbed_side(a, b, centre),
-        perturbed_side(b, c, centre),
-        perturbed_side(c, a, centre),
-    ];
+    let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| perturbed_side(from, to, centre));
     sides.iter().all(|&s| s > 0) || sides.iter().all(|&s| s < 0)
 }
 
@@ -61,20 +57,14 @@ fn oracle_depth(corners: [Point; 3], depths: [u32; 3], p: Point) -> i128 {
             - i128::from(b.1 - a.1) * i128::from(c.0 - a.0)
     };
     let [a, b, c] = corners;
-    let (area, weights) = (
-        cross(a, b, c),
-        [cross(p, b, c), cross(a, p, c), cross(a, b, p)],
-    );
-    let sum: i128 = weights
-        .iter()
+    let area = cross(a, b, c);
+    let weights = [cross(p, b, c), cross(a, p, c), cross(a, b, p)];
+    let products = weights
+        .into_iter()
         .zip(depths)
-        .map(|(w, z)| w * i128::from(z))
-        .sum();
-    if area > 0 {
-        sum.div_euclid(area)
-    } else {
-        (-sum).div_euclid(-area)
-    }
+        .map(|(w, z)| w * i128::from(z));
+    let sum: i128 = products.sum();
+    (sum * area.signum()).div_euclid(area.abs())
 }
 
 /// Coordinates in sub-pixels: anywhere near, on half pixels (ties), or far inside the guard band.
@@ -93,11 +83,8 @@ fn triangle() -> impl Strategy<Value = (SubpixelBits, [Point; 3], [u32; 3])> {
         let point = || (coordinate(bits), coordinate(bits));
         // Small and round depths divide without remainder often.
         let depth = || prop_oneof![any::<u32>(), 0..9_u32, (0..9_u32).prop_map(|z| z << 16)];
-        (
-            Just(bits),
-            [point(), point(), point()],
-            [depth(), depth(), depth()],
-        )
+        let depths = [depth(), depth(), depth()];
+        (Just(bits), [point(), point(), point()], depths)
     })
 }
 
@@ -117,7 +104,7 @@ proptest! {
                 }
             }
         }
-        let found = fragments(screen, bits, PixelRect::image(64, 64));
+        let found = fragments(screen, bits, IMAGE);
         prop_assert_eq!(&found, &expected);
         for f in &found {
             prop_assert!((depths.iter().min().unwrap()..=depths.iter().max().unwrap()).contains(&&f.2));
@@ -130,9 +117,9 @@ proptest! {
         (x0, y0, w, h) in (0..60_i32, 0..60_i32, 0..64_i32, 0..64_i32),
     ) {
         let screen = [0, 1, 2].map(|i| vertex(corners[i], depths[i]));
-        let all = fragments(screen, bits, PixelRect::image(64, 64));
+        let all = fragments(screen, bits, IMAGE);
         for order in [[1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
-            prop_assert_eq!(&fragments(order.map(|i: usize| screen[i]), bits, PixelRect::image(64, 64)), &all);
+            prop_assert_eq!(&fragments(order.map(|i: usize| screen[i]), bits, IMAGE), &all);
         }
         let region = PixelRect { x0, y0, x1: (x0 + w).min(64), y1: (y0 + h).min(64) };
         let inside: Vec<_> =
@@ -149,7 +136,7 @@ proptest! {
         let at = |order: [usize; 3]| {
             let screen = order.map(|i| ScreenVertex { w_inverse: w_inverse[i], ..vertex(corners[i], 0) });
             let values = order.map(|i| attributes[i].map(|x| f64::from(x) / 65_535.0));
-            let setup = Setup::new(screen, bits, Cull::None, PixelRect::image(64, 64))?;
+            let setup = Setup::new(screen, bits, Cull::None, IMAGE)?;
             let mut found = Vec::new();
             setup.fragments(setup.bounds(), |x, y, _| {
                 found.extend(setup.interpolate(&values, x, y).map(f64::to_bits));
@@ -179,7 +166,7 @@ proptest! {
         }
         let mut counts = vec![0; 64 * 64];
         for tile in &tiles {
-            for (x, y, _) in fragments(tile.map(|p| vertex(scaled(p), 7)), bits, PixelRect::image(64, 64)) {
+            for (x, y, _) in fragments(tile.map(|p| vertex(scaled(p), 7)), bits, IMAGE) {
                 counts[y as usize * 64 + x as usize] += 1;
             }
         }
@@ -217,16 +204,12 @@ fn split(tiles: &mut Vec<[Point; 3]>, p: Point) {
 fn flip_edge(tiles: &mut [[Point; 3]], choice: usize) {
     let i = choice % tiles.len();
     let [a, b, c] = tiles[i];
-    let Some(j) = tiles
-        .iter()
-        .position(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].contains(&[b, a]))
-    else {
+    let has_side = |t: &[Point; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].contains(&[b, a]);
+    let Some(j) = tiles.iter().position(has_side) else {
         return;
     };
-    let d = tiles[j]
-        .into_iter()
-        .find(|p| *p != a && *p != b)
-        .expect("a third corner");
+    let mut corners = tiles[j].into_iter();
+    let d = corners.find(|p| ![a, b].contains(p)).expect("a third");
     let (s, t) = ([c, a, d], [d, b, c]);
     if area(s) > 0 && area(t) > 0 {
         (tiles[i], tiles[j]) = (s, t);
@@ -235,18 +218,9 @@ fn flip_edge(tiles: &mut [[Point; 3]], choice: usize) {
 
 #[test]
 fn a_triangle_without_area_draws_nothing() {
-    for corners in [
-        [(0, 0), (0, 0), (900, 900)],
-        [(0, 0), (300, 300), (900, 900)],
-    ] {
-        assert!(
-            fragments(
-                corners.map(|p| vertex(p, 0)),
-                SubpixelBits::Eight,
-                PixelRect::image(64, 64)
-            )
-            .is_empty()
-        );
+    for second in [(0, 0), (300, 300)] {
+        let corners = [(0, 0), second, (900, 900)].map(|p| vertex(p, 0));
+        assert!(fragments(corners, SubpixelBits::Eight, IMAGE).is_empty());
     }
 }
 
@@ -255,15 +229,10 @@ fn culling_follows_the_turn_on_the_screen() {
     // Counter-clockwise as a person sees it; rows count downwards.
     let front = [(0, 0), (0, 2560), (2560, 0)].map(|p| vertex(p, 0));
     let back = [front[0], front[2], front[1]];
-    let drawn = |corners, cull| {
-        Setup::new(corners, SubpixelBits::Eight, cull, PixelRect::image(64, 64)).is_some()
+    let drawn = |corners| {
+        [Cull::None, Cull::Back, Cull::Front]
+            .map(|cull| Setup::new(corners, SubpixelBits::Eight, cull, IMAGE).is_some())
     };
-    assert_eq!(
-        [Cull::None, Cull::Back, Cull::Front].map(|c| drawn(front, c)),
-        [true, true, false]
-    );
-    assert_eq!(
-        [Cull::None, Cull::Back, Cull::Front].map(|c| drawn(back, c)),
-        [true, false, true]
-    );
+    assert_eq!(drawn(front), [true, true, false]);
+    assert_eq!(drawn(back), [true, false, true]);
 }

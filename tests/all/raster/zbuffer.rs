@@ -34,10 +34,9 @@ fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<Sa
                 Paint::gouraud(intensity, colors)
             }
         };
-        let screen = positions.map(|p| projector.screen(p));
         let face = Face {
             positions,
-            screen,
+            screen: positions.map(|p| projector.screen(p)),
             paint,
         };
         face.pieces(&projector, view.cull, |setup, paint| {
@@ -76,34 +75,23 @@ fn soup() -> impl Strategy<Value = Vec<[DVec3; 3]>> {
 fn set() -> impl Strategy<Value = ViewSet> {
     (
         prop_oneof![Just(0.3), Just(1.0)],
-        any::<bool>(),
-        any::<bool>(),
+        prop_oneof![Just(Interpolation::Flat), Just(Interpolation::Gouraud)],
+        prop_oneof![Just(SubpixelBits::Eight), Just(SubpixelBits::Sixteen)],
         prop_oneof![Just(Cull::None), Just(Cull::Front), Just(Cull::Back)],
-        any::<bool>(),
+        prop_oneof![
+            Just(Projection::Perspective),
+            Just(Projection::Orthographic)
+        ],
         1..3_u32,
     )
-        .prop_map(|(radius, flat, sixteen, cull, perspective, samples)| {
+        .prop_map(|(radius, interpolation, bits, cull, projection, samples)| {
             let sphere = Sphere {
                 center: DVec3::new(0.1, 0.0, -0.1),
                 radius,
             };
-            let projection = if perspective {
-                Projection::Perspective
-            } else {
-                Projection::Orthographic
-            };
             let directions = [DVec3::X, DVec3::new(-0.3, 0.7, 0.5)];
-            let bits = if sixteen {
-                SubpixelBits::Sixteen
-            } else {
-                SubpixelBits::Eight
-            };
             let shading = Shading {
-                interpolation: if flat {
-                    Interpolation::Flat
-                } else {
-                    Interpolation::Gouraud
-                },
+                interpolation,
                 ..Shading::default()
             };
             ViewSet::around(&sphere, &directions, 37, 23, projection)
@@ -169,17 +157,16 @@ fn a_reused_buffer_and_any_number_of_parts_give_the_same_picture() {
     let sphere = Sphere::of_mesh(&mesh).expect("triangles");
     let pictures = |threads: usize| -> Vec<(Grid<SampleKey>, u64)> {
         let mut buffer = ZBuffer::new(threads);
-        [[90, 70], [16, 16], [90, 70]]
-            .iter()
-            .map(|&[width, height]| {
-                let directions = [DVec3::new(0.2, -0.4, 0.9)];
-                let set =
-                    ViewSet::around(&sphere, &directions, width, height, Projection::Perspective)
-                        .expect("a view");
-                buffer.draw(&scene, &set.views[0], &set);
-                (buffer.keys().clone(), buffer.dropped())
-            })
-            .collect()
+        let sizes = [[90, 70], [16, 16], [90, 70]];
+        let pictures = sizes.map(|[width, height]| {
+            let directions = [DVec3::new(0.2, -0.4, 0.9)];
+            let projection = Projection::Perspective;
+            let set = ViewSet::around(&sphere, &directions, width, height, projection);
+            let set = set.expect("a view");
+            buffer.draw(&scene, &set.views[0], &set);
+            (buffer.keys().clone(), buffer.dropped())
+        });
+        pictures.into()
     };
     let expected = pictures(1);
     assert_eq!(expected[0], expected[2]);

@@ -55,31 +55,27 @@ fn handles(count: u32) -> Mesh {
             let rim = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
             let rim = rim.map(|(x, y)| y * (n + 1) + x);
             // A tube in rings that narrow towards the middle.
-            let mut below: Vec<u32> = rim.to_vec();
+            let mut below = rim;
             for ring in 1..sides {
                 let t = f64::from(ring) / f64::from(sides);
                 let narrow = 0.1 + 0.9 * (2.0 * t - 1.0).abs();
                 let center = rim.map(|v| positions[v as usize]).iter().sum::<DVec3>() / 4.0;
-                let start = positions.len() as u32;
+                let above = [0, 1, 2, 3].map(|k| positions.len() as u32 + k);
                 for v in rim {
                     let p = positions[v as usize];
                     let flat = center + (p - center) * narrow;
-                    positions.push(DVec3::new(flat.x, flat.y, p.z + 0.12 * t));
+                    positions.push(flat.with_z(p.z + 0.12 * t));
                 }
-                join(
-                    &mut triangles,
-                    &below,
-                    &(start..start + 4).collect::<Vec<_>>(),
-                );
-                below = (start..start + 4).collect();
+                join(&mut triangles, below, above);
+                below = above;
             }
-            join(&mut triangles, &below, &rim.map(|v| v + sheet));
+            join(&mut triangles, below, rim.map(|v| v + sheet));
         }
     }
     Mesh::from_triangles(positions, triangles).expect("valid")
 }
 
-fn join(triangles: &mut Vec<[u32; 3]>, below: &[u32], above: &[u32]) {
+fn join(triangles: &mut Vec<[u32; 3]>, below: [u32; 4], above: [u32; 4]) {
     for k in 0..4 {
         let [a, b] = [below[k], below[(k + 1) % 4]];
         let [c, d] = [above[k], above[(k + 1) % 4]];

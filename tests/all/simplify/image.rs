@@ -3,9 +3,12 @@
 use glam::DVec3;
 use lodmark::{
     Silent,
-    collapse::{EdgeStar, Engine, LiveMesh, Patch, Proposal, Rules, Schedule, Site, Topology},
-    mesh::{Mesh, canonical, generate},
-    num::math,
+    collapse::{
+        Changes, EdgeStar, Engine, LiveMesh, Observer, Patch, Proposal, Rules, Schedule, Site,
+        Topology,
+    },
+    mesh::{Mesh, canonical, generate, weld},
+    num::{fixed::SubpixelBits, math},
     raster,
     simplify::{
         self, MethodOptions, Options, Stop, Target,
@@ -13,12 +16,12 @@ use lodmark::{
         memoryless::{self, MemorylessOptions},
     },
     view::{
-        Cull, Interpolation, Projection, Shading, Specular, Sphere, View, ViewSet, frame_of,
+        Cull, Interpolation, Projection, Shading, Specular, Sphere, View, ViewSet,
         sets::dodecahedron,
     },
 };
 
-use crate::support::{same_on_all_threads, scene_of};
+use crate::support::{collapse, framed, same_on_all_threads, scene_of, snapshot};
 
 fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> ImageDriven {
     let pictures = Pictures::new(&reference(original, set), live, EngineName::Buckets);
@@ -34,13 +37,9 @@ pub(crate) fn reference(original: &Mesh, set: &ViewSet) -> ReferenceImages {
 pub(crate) fn error(original: &Mesh, current: &Mesh, set: &ViewSet) -> i64 {
     let (a, b) = (scene_of(original), scene_of(current));
     let view = |view: &View| -> i64 {
-        let (x, y) = (
-            raster::luma_sums(&a, view, set),
-            raster::luma_sums(&b, view, set),
-        );
-        x.values()
-            .iter()
-            .zip(y.values())
+        let [x, y] = [&a, &b].map(|scene| raster::luma_sums(scene, view, set));
+        let pairs = x.values().iter().zip(y.values());
+        pairs
             .map(|(&x, &y)| (i64::from(x) - i64::from(y)).pow(2))
             .sum()
     };
@@ -72,28 +71,24 @@ pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
         }
     }
     // A fan with every face twice, the second time turned over.
-    let rim: Vec<[f64; 3]> = [
+    let rim = [
         [0.0, 0.0, 0.4],
         [1.0, 0.0, 0.0],
         [0.4, 0.9, 0.1],
         [-0.6, 0.8, 0.0],
         [-1.0, -0.1, 0.2],
         [0.1, -1.0, 0.0],
-    ]
-    .into_iter()
-    .collect();
+    ];
     let fan = (1..6).flat_map(|i| {
         let next = i % 5 + 1;
         [[0, i, next], [0, next, i]]
     });
+    let book = canonical(&weld(mesh(&book, pages)).mesh).mesh;
     vec![
         ("closed", generate::icosphere(1)),
         ("hidden", generate::by_name("probe").expect("a generator")),
         ("open", generate::grid(6, 5, generate::Height::Polynomial)),
-        (
-            "non-manifold",
-            canonical(&lodmark::mesh::weld(mesh(&book, pages)).mesh).mesh,
-        ),
+        ("non-manifold", book),
         ("duplicate faces", mesh(&rim, fan.collect())),
         ("seams", canonical(&generate::textured_torus(10, 6)).mesh),
     ]
@@ -113,54 +108,33 @@ pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
         strength: 0.5,
         exponent: 12,
     });
-    let inside = View::perspective(
-        [
-            sphere.center,
-            sphere.center + DVec3::new(0.3, 0.2, 1.0),
-            DVec3::Y,
-        ],
-        [0.1 * sphere.radius, 4.0 * sphere.radius],
-        [40, 32],
-    );
+    let ahead = sphere.center + DVec3::new(0.3, 0.2, 1.0);
+    let range = [0.1 * sphere.radius, 4.0 * sphere.radius];
+    let inside = View::perspective([sphere.center, ahead, DVec3::Y], range, [40, 32]);
     let inside = ViewSet {
         views: vec![inside.expect("a view")],
         ..outside.clone()
     };
+    let one_sided = Shading {
+        two_sided: false,
+        ..Shading::default()
+    };
+    let shiny = Shading {
+        specular,
+        ..gouraud
+    };
+    let all = || outside.clone();
+    let interior = all().with_interior_views(2).expect("enough views");
+    let culled = all().with_shading(one_sided).with_cull(Cull::Back);
     vec![
-        ("flat", outside.clone()),
-        ("Gouraud", outside.clone().with_shading(gouraud)),
-        (
-            "specular Gouraud",
-            outside.clone().with_shading(Shading {
-                specular,
-                ..gouraud
-            }),
-        ),
-        (
-            "one-sided, backs culled",
-            outside
-                .clone()
-                .with_shading(Shading {
-                    two_sided: false,
-                    ..Shading::default()
-                })
-                .with_cull(Cull::Back),
-        ),
-        (
-            "interior",
-            outside
-                .clone()
-                .with_interior_views(2)
-                .expect("enough views"),
-        ),
+        ("flat", all()),
+        ("Gouraud", all().with_shading(gouraud)),
+        ("specular Gouraud", all().with_shading(shiny)),
+        ("one-sided, backs culled", culled),
+        ("interior", interior),
         ("orthographic", around(Projection::Orthographic)),
-        (
-            "16 bits",
-            outside
-                .clone()
-                .with_subpixel(lodmark::num::fixed::SubpixelBits::Sixteen),
-        ),
-        ("2 x 2 samples", outside.with_samples(2).expect("small")),
+        ("16 bits", all().with_subpixel(SubpixelBits::Sixteen)),
+        ("2 x 2 samples", all().with_samples(2).expect("small")),
         ("inside, near-clipped", inside),
     ]
 }
@@ -180,48 +154,30 @@ fn rules(mesh_name: &str) -> Rules {
 #[test]
 fn maintained_pictures_and_error_never_drift_from_those_drawn_from_scratch() {
     for (mesh_name, mesh) in meshes() {
-        let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame).in_frame_units().clone();
-        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        let (frame, original, sphere) = framed(&mesh);
         for (view_name, set) in view_sets(&sphere) {
+            let name = format!("{mesh_name}, {view_name}");
             let live = LiveMesh::new(&mesh, frame);
             let mut method = method(&original, &live, &set, 0.0);
             let mut engine = Engine::new(live, rules(mesh_name), Schedule::Lazy);
             let mut steps = 0;
             while engine.live().triangle_count() > 4 && steps < 24 {
                 let before = engine.live().triangle_count();
-                engine
-                    .run(&mut method, before - 1, &mut (), &Silent)
-                    .expect("not interrupted");
+                collapse(&mut engine, &mut method, before - 1);
                 if engine.live().triangle_count() == before {
                     break;
                 }
                 steps += 1;
-                let now = engine
-                    .live()
-                    .to_mesh()
-                    .expect("valid")
-                    .enter_frame(frame)
-                    .in_frame_units()
-                    .clone();
+                let now = snapshot(engine.live());
                 let (scene, pictures) = (scene_of(&now), method.pictures());
                 for (i, view) in set.views.iter().enumerate() {
                     let fresh = raster::luma(&scene, view, &set);
-                    assert!(
-                        fresh.tones == pictures.engine().luma(i),
-                        "{mesh_name}, {view_name}"
-                    );
+                    assert!(fresh.tones == pictures.engine().luma(i), "{name}");
                 }
-                assert_eq!(
-                    pictures.sum() as i64,
-                    error(&original, &now, &set),
-                    "{mesh_name}, {view_name}"
-                );
+                let expected = error(&original, &now, &set);
+                assert_eq!(pictures.sum() as i64, expected, "{name}");
             }
-            assert!(
-                steps > 0,
-                "{mesh_name}, {view_name}: nothing collapsed, nothing tested"
-            );
+            assert!(steps > 0, "{name}: nothing collapsed, nothing tested");
         }
     }
 }
@@ -232,20 +188,13 @@ type Key = (i64, f64, f64, [u32; 2]);
 #[test]
 fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
     for (mesh_name, mesh) in meshes() {
-        let frame = frame_of(&mesh);
-        let original = mesh.enter_frame(frame).in_frame_units().clone();
-        let sphere = Sphere::of_mesh(&original).expect("triangles");
+        let (frame, original, sphere) = framed(&mesh);
         for (view_name, set) in view_sets(&sphere).into_iter().step_by(3) {
+            let name = format!("{mesh_name}, {view_name}");
             let mut live = LiveMesh::new(&mesh, frame);
             // The published cost, and twice with swept volume charged for.
             for price in [0.0, 0.0, 3e3, 1e6] {
-                let now = live
-                    .to_mesh()
-                    .expect("valid")
-                    .enter_frame(frame)
-                    .in_frame_units()
-                    .clone();
-                let before = error(&original, &now, &set);
+                let before = error(&original, &snapshot(&live), &set);
                 // (1) Every legal collapse, judged by drawing the whole result.
                 let mut cheapest: Option<(Key, i64)> = None;
                 for edge in (0..live.edge_ids()).filter(|&e| live.edge(e).is_some()) {
@@ -254,21 +203,15 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                     let Ok(site) = Site::new(&live, &star, rules(mesh_name)) else {
                         continue;
                     };
-                    let Ok(proposal) = memoryless::propose(&site, &MemorylessOptions::default())
-                    else {
+                    let options = MemorylessOptions::default();
+                    let Ok(proposal) = memoryless::propose(&site, &options) else {
                         continue;
                     };
                     let mut patch = Patch::default();
                     site.patch(proposal.position, &mut patch);
                     let mut after = live.clone();
-                    after.apply(&patch, &mut lodmark::collapse::Changes::default());
-                    let result = after
-                        .to_mesh()
-                        .expect("valid")
-                        .enter_frame(frame)
-                        .in_frame_units()
-                        .clone();
-                    let cost = error(&original, &result, &set) - before;
+                    after.apply(&patch, &mut Changes::default());
+                    let cost = error(&original, &snapshot(&after), &set) - before;
                     let ends = live.edge(edge).expect("in use");
                     let d = live.position(ends[1]) - live.position(ends[0]);
                     let charged = cost + (price * math::sqrt(proposal.secondary)) as i64;
@@ -285,16 +228,12 @@ fn a_fresh_choice_is_the_cheapest_of_all_pictures_and_costs_what_it_says() {
                 let mut method = method(&original, &live, &set, price);
                 let mut engine = Engine::new(live.clone(), rules(mesh_name), Schedule::Eager);
                 let mut taken = Taken::default();
-                engine
-                    .run(&mut method, triangles - 1, &mut taken, &Silent)
-                    .expect("not interrupted");
-                assert_eq!(taken.price, cheapest.0, "{mesh_name}, {view_name}");
-                assert_eq!(taken.edge, Some(cheapest.3), "{mesh_name}, {view_name}");
-                assert_eq!(
-                    method.pictures().sum() as i64 - before,
-                    cost,
-                    "{mesh_name}, {view_name}"
-                );
+                let stop = engine.run(&mut method, triangles - 1, &mut taken, &Silent);
+                stop.expect("not interrupted");
+                assert_eq!(taken.price, cheapest.0, "{name}");
+                assert_eq!(taken.edge, Some(cheapest.3), "{name}");
+                let sum = method.pictures().sum() as i64;
+                assert_eq!(sum - before, cost, "{name}");
                 live = engine.into_parts().0;
             }
         }
@@ -308,17 +247,15 @@ struct Taken {
     price: i64,
 }
 
-impl lodmark::collapse::Observer for Taken {
+impl Observer for Taken {
     fn chosen(&mut self, proposal: &Proposal) {
         self.price = proposal.primary;
     }
 
     fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
-        let edge = [
-            patch.moved.expect("a collapse moves").vertex,
-            patch.gone.expect("a collapse removes"),
-        ];
-        self.edge.get_or_insert(edge);
+        let kept = patch.moved.expect("a collapse moves").vertex;
+        let gone = patch.gone.expect("a collapse removes");
+        self.edge.get_or_insert([kept, gone]);
     }
 }
 
@@ -397,21 +334,13 @@ fn one_triangle_is_a_target_like_any_other() {
     assert_eq!(one, (Size::Pixels(Size::LEAST), Start::Triangles(1)));
     assert_eq!(few, one);
     let limited = used(fast(Target::ErrorOnly).error_rms(0.5));
-    assert_eq!(
-        limited,
-        (Size::Pixels(Size::MOST), Start::Triangles(65_536))
-    );
+    let most = (Size::Pixels(Size::MOST), Start::Triangles(65_536));
+    assert_eq!(limited, most);
 }
 
 #[test]
 fn pre_simplification_leaves_as_many_triangles_as_the_paper_had() {
     // Table 1: bunny 14,535 -> 1,333 is about tenfold, dragon 32,768 -> 8,191 fourfold.
-    for (target, start) in [
-        (100, 1_000),
-        (1_333, 13_330),
-        (8_191, 32_768),
-        (16_384, 65_536),
-    ] {
-        assert_eq!(Start::Auto.triangles(Some(target)), start);
-    }
+    let starts = [100, 1_333, 8_191, 16_384].map(|target| Start::Auto.triangles(Some(target)));
+    assert_eq!(starts, [1_000, 13_330, 32_768, 65_536]);
 }

@@ -11,10 +11,10 @@ use lodmark::{
         image::{ImageOptions, Preset, Size, Start},
         simplify,
     },
-    view::{Cull, Projection, Sphere, ViewSet, frame_of, sets::rhombicuboctahedron},
+    view::{Cull, Projection, ViewSet, sets::rhombicuboctahedron},
 };
 
-use crate::support::scene_of;
+use crate::support::{framed, scene_of};
 
 /// The scene, and what is left of it with 0, 10 and 20 of 20 views that look inside.
 fn results() -> &'static (Mesh, [Mesh; 3]) {
@@ -38,10 +38,8 @@ fn results() -> &'static (Mesh, [Mesh; 3]) {
 
 /// Flat RMS in views that drove nothing.
 fn rms(original: &Mesh, other: &Mesh, cull: Cull) -> f64 {
-    let frame = frame_of(original);
-    let [original, other] =
-        [original, other].map(|m| m.enter_frame(frame).in_frame_units().clone());
-    let sphere = Sphere::of_mesh(&original).expect("triangles");
+    let (frame, original, sphere) = framed(original);
+    let other = other.enter_frame(frame).in_frame_units().clone();
     let directions = rhombicuboctahedron();
     let views = ViewSet::around(&sphere, &directions, 96, 96, Projection::Perspective);
     let views = views.expect("small").with_cull(cull);
@@ -51,10 +49,8 @@ fn rms(original: &Mesh, other: &Mesh, cull: Cull) -> f64 {
 
 /// The part inside the casing, whose vertices are nearer to the middle.
 fn inside(mesh: &Mesh) -> Mesh {
-    let near = |t: &&[u32; 3]| {
-        t.iter()
-            .all(|&v| mesh.positions()[v as usize].length() < 1.88)
-    };
+    let is_near = |v: &u32| mesh.positions()[*v as usize].length() < 1.88;
+    let near = |t: &&[u32; 3]| t.iter().all(is_near);
     let triangles = mesh.triangles().iter().filter(near).copied().collect();
     Mesh::from_triangles(mesh.positions().to_vec(), triangles).expect("a part")
 }

@@ -14,6 +14,12 @@ use lodmark::{
     view::ViewsName,
 };
 
+pub(crate) const SHADINGS: [DrivingShading; 3] = [
+    DrivingShading::Flat,
+    DrivingShading::Gouraud,
+    DrivingShading::Mixed,
+];
+
 const PRESETS: [Preset; 4] = [Preset::Paper, Preset::Fast, Preset::Default, Preset::Best];
 
 fn target() -> Target {
@@ -30,11 +36,7 @@ fn image(options: &Options) -> &ImageOptions {
 #[test]
 fn a_preset_brings_its_schedule_and_the_weights_of_the_shading() {
     for preset in PRESETS {
-        for shading in [
-            DrivingShading::Flat,
-            DrivingShading::Gouraud,
-            DrivingShading::Mixed,
-        ] {
+        for shading in SHADINGS {
             let first = Options::image(target()).preset(preset).shading(shading);
             let last = Options::image(target()).shading(shading).preset(preset);
             assert_eq!(first, last);
@@ -89,10 +91,8 @@ fn a_step_that_means_nothing_to_the_method_is_refused_by_name() {
         assert!(options.check().is_ok());
         for (name, step) in steps {
             let refused = simplify(&generate::tetrahedron(), &step(options.clone()));
-            assert!(
-                matches!(&refused, Err(Error::Usage(what)) if what.starts_with(name)),
-                "{refused:?}"
-            );
+            let named = matches!(&refused, Err(Error::Usage(what)) if what.starts_with(name));
+            assert!(named, "{refused:?}");
         }
     }
     for (name, options) in [

@@ -11,19 +11,14 @@ use lodmark::{
         simplify, simplify_guided,
         visibility::{VisibilityMethod, VisibilityOptions},
     },
-    view::frame_of,
     visibility::{self, measure},
 };
 use proptest::prelude::*;
 
 use crate::{
     simplify::memoryless::{interior, star},
-    support::{Random, expect, folder, meshes, put, same_on_all_threads, split},
+    support::{Random, collapse, expect, folder, live, meshes, put, same_on_all_threads},
 };
-
-fn live(mesh: &Mesh) -> LiveMesh {
-    LiveMesh::new(mesh, frame_of(mesh))
-}
 
 /// Random visibilities, a third of them 0.
 fn scattered(count: usize, seed: u64) -> Vec<f64> {
@@ -49,8 +44,7 @@ fn engine(mesh: &Mesh) -> Engine {
 
 fn reduced(mesh: &Mesh, mut method: impl Method, triangles: usize) -> Mesh {
     let mut engine = engine(mesh);
-    let stop = engine.run(&mut method, triangles, &mut (), &Silent);
-    stop.expect("runs");
+    collapse(&mut engine, &mut method, triangles);
     engine.live().to_mesh().expect("valid")
 }
 
@@ -58,12 +52,9 @@ fn reduced(mesh: &Mesh, mut method: impl Method, triangles: usize) -> Mesh {
 fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
     // visibility_guided.quadric: a quarter is seen of the faces at w.
     let live = interior(false);
-    let visibility: Vec<f64> = (0..live.triangle_ids())
-        .map(|t| match live.triangle(t) {
-            Some(corners) if corners.contains(&1) => 0.25,
-            _ => 1.0,
-        })
-        .collect();
+    let at_w = |t| live.triangle(t).is_some_and(|corners| corners.contains(&1));
+    let seen = (0..live.triangle_ids()).map(|t| if at_w(t) { 0.25 } else { 1.0 });
+    let visibility: Vec<f64> = seen.collect();
     let options = VisibilityOptions {
         quadric: QuadricOptions {
             weighting: Weighting::Unit,
@@ -94,11 +85,8 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
         for (found, expected) in proposal.position.position().to_array().into_iter().zip(v) {
             assert!((found - expected).abs() < 1e-11, "{found}, not {expected}");
         }
-        assert!(
-            (proposal.secondary - cost).abs() < 1e-12,
-            "{} instead of {cost}",
-            proposal.secondary
-        );
+        let found = proposal.secondary;
+        assert!((found - cost).abs() < 1e-12, "{found} instead of {cost}");
         assert_eq!(proposal.primary, 0);
     }
 }
@@ -116,10 +104,8 @@ fn visibilities_that_fit_no_triangle_or_no_share_are_refused() {
         visibility[7] = wrong;
         let error = VisibilityMethod::new(&live, &VisibilityOptions::default(), &visibility);
         let text = error.expect_err("out of range").to_string();
-        assert!(
-            text.contains("triangle 7") && text.contains("0 to 1"),
-            "{text}"
-        );
+        let named = text.contains("triangle 7") && text.contains("0 to 1");
+        assert!(named, "{text}");
     }
 }
 
@@ -146,17 +132,10 @@ fn what_nobody_sees_goes_first_and_the_rest_keeps_its_shape() {
     let guided = guided(&mesh, &VisibilityOptions::default(), &visibility);
     let guided = reduced(&mesh, guided, target);
     let plain = reduced(&mesh, plain(&mesh), target);
-    let ((guided_error, guided_count), (plain_error, plain_count)) =
-        (outside(&guided), outside(&plain));
-    assert_eq!(
-        guided_count, 320,
-        "the outer sphere has not lost a triangle"
-    );
-    assert!(plain_count < 300, "{plain_count}");
-    assert!(
-        guided_error < 0.7 * plain_error,
-        "{guided_error} {plain_error}"
-    );
+    let [guided, plain] = [guided, plain].map(|mesh| outside(&mesh));
+    assert_eq!(guided.1, 320, "the outer sphere has not lost a triangle");
+    assert!(plain.1 < 300, "{plain:?}");
+    assert!(guided.0 < 0.7 * plain.0, "{guided:?} {plain:?}");
 }
 
 /// Down to so many triangles, by six cameras.
@@ -175,42 +154,16 @@ fn options(triangles: u64) -> Options {
 #[test]
 fn options_out_of_range_are_refused_by_name() {
     let mesh = generate::icosphere(1);
-    for (wrong, said) in [
-        (
-            VisibilityOptions {
-                tie_weight: -1.0,
-                ..VisibilityOptions::default()
-            },
-            "tie-weight",
-        ),
-        (
-            VisibilityOptions {
-                tie_weight: f64::NAN,
-                ..VisibilityOptions::default()
-            },
-            "tie-weight",
-        ),
-        (
-            VisibilityOptions {
-                measure: visibility::MeasureOptions {
-                    octahedron: 9,
-                    ..visibility::MeasureOptions::default()
-                },
-                ..VisibilityOptions::default()
-            },
-            "octahedron",
-        ),
-        (
-            VisibilityOptions {
-                quadric: QuadricOptions {
-                    boundary_weight: -1.0,
-                    ..QuadricOptions::default()
-                },
-                ..VisibilityOptions::default()
-            },
-            "boundary-weight",
-        ),
-    ] {
+    type Fault = fn(&mut VisibilityOptions);
+    let faults: [(&str, Fault); 4] = [
+        ("tie-weight", |own| own.tie_weight = -1.0),
+        ("tie-weight", |own| own.tie_weight = f64::NAN),
+        ("octahedron", |own| own.measure.octahedron = 9),
+        ("boundary-weight", |own| own.quadric.boundary_weight = -1.0),
+    ];
+    for (said, fault) in faults {
+        let mut wrong = VisibilityOptions::default();
+        fault(&mut wrong);
         let options = Options::new(wrong, Target::triangles(9));
         let error = simplify(&mesh, &options).expect_err("out of range");
         assert!(matches!(error, Error::Usage(_)), "{error}");
@@ -235,16 +188,10 @@ fn a_visibility_measured_before_guides_as_one_measured_now() {
     assert_eq!(guided.history, direct.history);
     assert_eq!(guided.v_mesh(), Some(before.mesh()));
     let text = serde_json::to_string(&guided.options).expect("JSON");
-    assert_eq!(
-        serde_json::from_str::<Options>(&text).expect("read back"),
-        options
-    );
-    let other = simplify_guided(
-        &mesh,
-        &Options::quadric(Target::Triangles(60)),
-        &before,
-        &Silent,
-    );
+    let read: Options = serde_json::from_str(&text).expect("read back");
+    assert_eq!(read, options);
+    let quadric = Options::quadric(Target::Triangles(60));
+    let other = simplify_guided(&mesh, &quadric, &before, &Silent);
     assert!(matches!(other, Err(Error::Usage(_))));
     let mesh = generate::icosphere(1);
     let other = simplify_guided(&mesh, &asked, &before, &Silent);
@@ -263,11 +210,8 @@ fn every_level_of_a_guided_run_is_the_direct_run_to_it() {
             let triangles = (mesh.triangles().len() as f64 * share) as u64;
             replay.seek(triangles as usize).expect("fits");
             let direct = simplify(&mesh, &options(triangles)).expect("runs");
-            assert_eq!(
-                replay.live().to_mesh().expect("a mesh"),
-                direct.mesh,
-                "{kind} {share}"
-            );
+            let replayed = replay.live().to_mesh().expect("a mesh");
+            assert_eq!(replayed, direct.mesh, "{kind} {share}");
         }
     }
 }
@@ -310,7 +254,7 @@ proptest! {
         let before = total(engine.live(), &method);
         for share in [0.8, 0.5] {
             let triangles = (mesh.triangles().len() as f64 * share) as usize;
-            engine.run(&mut method, triangles, &mut (), &Silent).expect("runs");
+            collapse(&mut engine, &mut method, triangles);
             // A vertex that lost its last face took its quadric along; only closed surfaces keep all.
             if matches!(kind, 1 | 4 | 5 | 6) {
                 for (before, after) in before.into_iter().zip(total(engine.live(), &method)) {
@@ -336,53 +280,31 @@ fn the_command_takes_the_visibility_from_a_file_and_refuses_that_of_another_mesh
     let dir = folder();
     put(&dir, "in.ply", &generate::shells(2, 2));
     put(&dir, "other.ply", &generate::shells(2, 1));
-    let measure = ["--cameras", "18", "--size", "64", "--partial", "counts.bin"];
-    expect(&dir, 0, &[&["visibility", "in.ply"][..], &measure].concat());
-    let simplify = |input: &str, more: &[&str], exit: i32| {
-        let words = [
-            &[
-                "simplify",
-                input,
-                "out.ply",
-                "-t",
-                "330",
-                "--method",
-                "visibility",
-            ][..],
-            &["--json", "report.json", "--history", "history.bin"],
-            more,
-        ];
-        expect(&dir, exit, &words.concat())
+    let measure = "visibility in.ply --cameras 18 --size 64 --partial counts.bin";
+    expect(&dir, 0, measure);
+    let simplify = |input: &str, more: &str, exit: i32| {
+        let words = "out.ply -t 330 --method visibility --json report.json --history history.bin";
+        expect(&dir, exit, &format!("simplify {input} {words} {more}"))
     };
     let files = || {
         ["out.ply", "report.json", "history.bin"]
             .map(|name| std::fs::read(dir.path().join(name)).expect("written"))
     };
-    simplify("in.ply", &["--visibility", "counts.bin"], 0);
+    simplify("in.ply", "--visibility counts.bin", 0);
     let from_file = files();
-    simplify("in.ply", &["--cameras", "18", "--visibility-size", "64"], 0);
-    assert_eq!(
-        files(),
-        from_file,
-        "measured before or now, not a byte differs"
-    );
+    simplify("in.ply", "--cameras 18 --visibility-size 64", 0);
+    assert_eq!(files(), from_file, "measured before or now");
     let report: serde_json::Value = serde_json::from_slice(&from_file[1]).expect("JSON");
     assert_eq!(report["options"]["method"]["measure"]["octahedron"], 1);
-    assert!(
-        report["v_mesh"]
-            .as_f64()
-            .is_some_and(|v| v > 0.5 && v < 0.95)
-    );
-    let said = simplify("other.ply", &["--visibility", "counts.bin"], 3);
-    assert!(
-        said.contains("counts.bin") && said.contains("another mesh"),
-        "{said}"
-    );
+    let v_mesh = report["v_mesh"].as_f64();
+    assert!(v_mesh.is_some_and(|v| v > 0.5 && v < 0.95));
+    let said = simplify("other.ply", "--visibility counts.bin", 3);
+    let named = said.contains("counts.bin") && said.contains("another mesh");
+    assert!(named, "{said}");
     std::fs::write(dir.path().join("counts.bin"), b"LODMVISI").expect("writes");
-    let said = simplify("in.ply", &["--visibility", "counts.bin"], 3);
+    let said = simplify("in.ply", "--visibility counts.bin", 3);
     assert!(said.contains("counts.bin"), "{said}");
-    let both = ["--visibility", "counts.bin", "--cameras", "6"];
-    simplify("in.ply", &both, 2);
-    let words = split("simplify in.ply out.ply -t 9 --method quadric --cameras 6");
-    assert!(expect(&dir, 2, &words).contains("--cameras"));
+    simplify("in.ply", "--visibility counts.bin --cameras 6", 2);
+    let words = "simplify in.ply out.ply -t 9 --method quadric --cameras 6";
+    assert!(expect(&dir, 2, words).contains("--cameras"));
 }

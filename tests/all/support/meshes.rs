@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 use lodmark::{
+    collapse::LiveMesh,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts},
     num::Frame,
     raster::Scene,
+    view::{Sphere, frame_of},
 };
 
 use super::Random;
@@ -12,6 +14,25 @@ use super::Random;
 /// A mesh to draw in views that are in its units.
 pub(crate) fn scene_of(mesh: &Mesh) -> Scene {
     Scene::of(&mesh.enter_frame(Frame::default()))
+}
+
+/// The frame of a mesh, the mesh in its units, and the sphere around that.
+pub(crate) fn framed(mesh: &Mesh) -> (Frame, Mesh, Sphere) {
+    let frame = frame_of(mesh);
+    let original = mesh.enter_frame(frame).in_frame_units().clone();
+    let sphere = Sphere::of_mesh(&original).expect("triangles");
+    (frame, original, sphere)
+}
+
+/// A live copy of a mesh in its own frame.
+pub(crate) fn live(mesh: &Mesh) -> LiveMesh {
+    LiveMesh::new(mesh, frame_of(mesh))
+}
+
+/// A live mesh as it is now, in units of its frame.
+pub(crate) fn snapshot(live: &LiveMesh) -> Mesh {
+    let mesh = live.to_mesh().expect("valid");
+    mesh.enter_frame(live.frame()).in_frame_units().clone()
 }
 
 fn jitter(positions: &mut [DVec3], amount: f64, random: &mut Random) {

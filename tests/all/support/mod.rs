@@ -19,10 +19,10 @@ pub(crate) use folds::faults;
 pub(crate) use geometry::{
     at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
 };
-pub(crate) use meshes::scene_of;
+pub(crate) use meshes::{framed, live, scene_of, snapshot};
 pub(crate) use models::{model, read_model};
 pub(crate) use oracle::say;
 pub(crate) use progress::{Impatient, Recorder, StopsAfter};
 pub(crate) use property::{bound_cases, bound_count, bound_seed, bounded, cases};
 pub(crate) use random::Random;
-pub(crate) use threads::{on_threads, same_on_all_threads};
+pub(crate) use threads::{collapse, on_threads, same_on_all_threads};

@@ -1,4 +1,15 @@
-//! Runs on given numbers of threads.
+//! Runs: of an engine, and of anything on given numbers of threads.
+
+use lodmark::{
+    Silent,
+    collapse::{Engine, Method, Stop},
+};
+
+/// Lets an engine collapse, which nobody interrupts.
+pub(crate) fn collapse(engine: &mut Engine, method: &mut dyn Method, triangles: usize) -> Stop {
+    let stop = engine.run(method, triangles, &mut (), &Silent);
+    stop.expect("nobody interrupts")
+}
 
 /// Runs something with so many threads to divide it among.
 pub(crate) fn on_threads<R: Send>(threads: usize, run: impl FnOnce() -> R + Send) -> R {

@@ -88,21 +88,17 @@ impl Unrender for BucketEngine {
 
 /// The sum of `work` over all views, in as many parts as there are scratches.
 fn in_parts<V: Send>(
-    mut views: Vec<V>,
+    views: Vec<V>,
     parts: &mut [PartScratch],
     work: &(impl Fn(V, &mut PartScratch) -> i64 + Sync),
 ) -> i64 {
-    match parts {
-        [] => 0,
-        [part] => views.into_iter().map(|view| work(view, part)).sum(),
-        _ => {
-            let (left, right) = parts.split_at_mut(parts.len() / 2);
-            let rest = views.split_off(views.len() * left.len() / (left.len() + right.len()));
-            let (a, b) = parallel::join(
-                || in_parts(views, left, work),
-                || in_parts(rest, right, work),
-            );
-            a + b
-        }
-    }
+    let share = views.len().div_ceil(parts.len().max(1));
+    let mut views = views.into_iter();
+    let dealt = parts
+        .iter_mut()
+        .map(|part| (views.by_ref().take(share).collect(), part));
+    let mut dealt: Vec<(Vec<V>, &mut PartScratch)> = dealt.collect();
+    parallel::sum_mut(&mut dealt, &|_, (views, part)| {
+        views.drain(..).map(|view| work(view, part)).sum()
+    })
 }
