@@ -8,6 +8,7 @@
 mod attribute_rows;
 mod decimal;
 mod format;
+mod gltf;
 mod obj;
 mod per_vertex;
 mod ply;
