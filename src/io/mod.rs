@@ -2,8 +2,9 @@
 //!
 //! A reader returns a valid mesh, notes about what the mesh could not keep, or an error that says where the file is
 //! wrong; it needs time and memory in proportion to the size of the file, whatever the file declares. A writer returns
-//! notes about what the format cannot keep; reading back what it wrote changes no bit of the rest. The network, and
-//! files other than the one named (material libraries), are never touched.
+//! notes about what the format cannot keep; reading back what it wrote changes no bit of the rest. The network is never
+//! touched, nor are files other than the one named (material libraries, images), except the buffers that a glTF document
+//! names in its own folder or below.
 
 mod attribute_rows;
 mod decimal;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Encoding, Format, obj, ply, stl};
+use super::{Encoding, Format, gltf, obj, ply, stl};
 use crate::{
     Error, Result,
     encode::bytes,
@@ -24,16 +24,10 @@ pub struct Loaded {
 /// reads it once.
 ///
 /// # Errors
-/// As [`bytes::read`], [`Error::Unsupported`] for glTF, otherwise as [`read_bytes`].
+/// As [`bytes::read`], otherwise as [`read_bytes`].
 pub fn read(path: &Path) -> Result<Loaded> {
     let bytes = bytes::read(path)?;
     let (named, found) = (Format::of_extension(path), Format::of_content(&bytes));
-    if named.is_none() && found.is_none() && is_gltf(path, &bytes) {
-        return Err(Error::Unsupported(format!(
-            "{}: glTF cannot be read yet; convert it to .obj or .ply",
-            path.display()
-        )));
-    }
     let loaded = read_bytes(found.or(named).unwrap_or(Format::Obj), &bytes, path);
     let note = match (named, found) {
         (Some(named), Some(found)) if named != found => {
@@ -42,8 +36,8 @@ pub fn read(path: &Path) -> Result<Loaded> {
         (None, None) if loaded.is_err() => {
             return Err(Error::input(
                 path,
-                "neither the name nor the content says which format this is; expected an OBJ, PLY or STL mesh in a \
-                 file named .obj, .ply or .stl",
+                "neither the name nor the content says which format this is; expected an OBJ, PLY, STL or glTF \
+                 mesh in a file named .obj, .ply, .stl, .glb or .gltf",
             ));
         }
         (None, None) => "the name does not say the format: read as OBJ".into(),
@@ -54,18 +48,12 @@ pub fn read(path: &Path) -> Result<Loaded> {
     Ok(loaded)
 }
 
-fn is_gltf(path: &Path, bytes: &[u8]) -> bool {
-    let extension = path.extension();
-    bytes.starts_with(b"glTF")
-        || extension
-            .is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"))
-}
-
-/// Reads a mesh of a known format from memory; `path` only appears in messages (`-` where there is none).
-/// O(n log n) in the number of bytes.
+/// Reads a mesh of a known format from memory; `path` appears in messages (`-` where there is none), and its folder is
+/// where the buffers of a glTF document lie that are not in it. O(n log n) in the number of bytes.
 ///
 /// # Errors
-/// [`Error::Input`], with the line or the byte where the content is not what the format demands.
+/// [`Error::Input`], with the line or the byte where the content is not what the format demands; of glTF also
+/// [`Error::Unsupported`] for what it requires and this version does not know, and [`Error::Io`] for buffers.
 pub fn read_bytes(format: Format, bytes: &[u8], path: impl AsRef<Path>) -> Result<Loaded> {
     if bytes.is_empty() {
         return Err(Error::input(
@@ -73,16 +61,17 @@ pub fn read_bytes(format: Format, bytes: &[u8], path: impl AsRef<Path>) -> Resul
             format!("the file is empty; expected {format} content"),
         ));
     }
-    match format {
+    let found = match format {
+        Format::Glb | Format::Gltf => return gltf::read(bytes, path.as_ref()),
         Format::Obj => obj::read(bytes),
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
-    }
-    .map_err(|message| Error::input(path, message))
+    };
+    found.map_err(|message| Error::input(path, message))
 }
 
 impl Mesh {
-    /// Reads a mesh file (OBJ, PLY or STL), welded and in canonical order as the methods want it: vertices at bit-equal
+    /// Reads a mesh file (OBJ, PLY, STL or glTF), welded and in canonical order as the methods want it: vertices at bit-equal
     /// places are one, triangles that repeat a vertex and vertices without triangles are gone, and the order does not
     /// depend on that of the file.
     ///

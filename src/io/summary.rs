@@ -67,8 +67,10 @@ impl Summary {
     #[must_use]
     pub fn report(&self) -> String {
         let encoding = match self.encoding {
-            Encoding::Obj | Encoding::PlyAscii | Encoding::StlAscii => "text",
-            Encoding::PlyLittleEndian | Encoding::StlBinary => "little-endian binary",
+            Encoding::Gltf | Encoding::Obj | Encoding::PlyAscii | Encoding::StlAscii => "text",
+            Encoding::Glb | Encoding::PlyLittleEndian | Encoding::StlBinary => {
+                "little-endian binary"
+            }
             Encoding::PlyBigEndian => "big-endian binary",
         };
         let bits = match self.precision {

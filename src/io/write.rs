@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::{Encoding, Format, obj, ply, stl};
-use crate::{Error, Result, encode::atomic, mesh::Mesh, num::Each};
+use crate::{Error, Result, encode::atomic, mesh::Mesh};
+
+/// The refusal to write glTF.
+const NO_GLTF: &str = "glTF cannot be written yet; write .obj or .ply";
 
 /// The bytes of `mesh` in an encoding, and notes about what it cannot keep.
 ///
@@ -11,6 +14,7 @@ use crate::{Error, Result, encode::atomic, mesh::Mesh, num::Each};
 /// [`Error::Unsupported`] where a coordinate does not fit into the format's numbers.
 pub fn encode(mesh: &Mesh, encoding: Encoding) -> Result<(Vec<u8>, Vec<String>)> {
     match encoding {
+        Encoding::Glb | Encoding::Gltf => Err(Error::Unsupported(NO_GLTF.into())),
         Encoding::Obj => Ok(obj::encode(mesh)),
         Encoding::PlyAscii => Ok(ply::encode(mesh, ply::Numbers::Text)),
         Encoding::PlyLittleEndian => Ok(ply::encode(mesh, ply::Numbers::LittleEndian)),
@@ -36,17 +40,22 @@ pub fn write(path: &Path, mesh: &Mesh) -> Result<Vec<String>> {
 /// The format that [`write`](fn@write) would use for `path`: ask before long work, not after it.
 ///
 /// # Errors
-/// [`Error::Usage`] for an extension without a format.
+/// [`Error::Usage`] for an extension without a format, [`Error::Unsupported`] for one that is only read.
 pub fn writable_format(path: &Path) -> Result<Format> {
-    Format::of_extension(path).ok_or_else(|| {
-        let known = Format::ALL
-            .each(|f| format!(".{}", f.extension()))
-            .join(", ");
+    let format = Format::of_extension(path).ok_or_else(|| {
+        let known = Format::ALL.iter().map(|f| format!(".{}", f.extension()));
+        let known = known.collect::<Vec<_>>().join(", ");
         Error::Usage(format!(
             "{}: no known format has this extension; expected one of {known}",
             path.display()
         ))
-    })
+    })?;
+    match format {
+        Format::Glb | Format::Gltf => {
+            Err(Error::Unsupported(format!("{}: {NO_GLTF}", path.display())))
+        }
+        Format::Obj | Format::Ply | Format::Stl => Ok(format),
+    }
 }
 
 impl Mesh {
