@@ -71,7 +71,7 @@
 //! | `geometry` | symmetric 3x3, triangles, boxes, the one tree over triangles: what bound, metric and simplify share |
 //! | `encode` | PNG, npy, JSON, hashes of pixels, contact sheets; whole files or none |
 //! | `mesh` | positions, triangles, corner attributes (wedges), materials; adjacency, welding, canonical order, findings, generators |
-//! | `io` | OBJ, PLY and STL, in and out; hostile input ends here |
+//! | `io` | OBJ, PLY and STL, in and out, and glTF; hostile input ends here |
 //! | `view` | cameras, the minimum bounding sphere, view sets and view files |
 //! | `raster` | `draw`: clip, snap, spans, depth, ids, shading; `unrender/buckets` and `unrender/layers`, two engines with the same bits |
 //! | `metric` | squared luma error, RMS, PSNR, silhouettes, surface distance, image difference; the report of candidates against a reference |

@@ -13,7 +13,7 @@ use crate::{
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::cells())]
 pub(super) struct BillboardsArgs {
-    /// The scene: .obj, .ply or .stl
+    /// The scene: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Folder for billboards.obj, billboards.mtl and quad-NNNN.png; made if missing

@@ -8,7 +8,7 @@ use crate::{Result, mesh::Findings};
 /// Report what is wrong with a mesh; exit code 1 when something is
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
-    /// The mesh: .obj, .ply or .stl
+    /// The mesh: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Do not unite vertices with equal positions

@@ -19,7 +19,7 @@ use crate::{
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::views())]
 pub(super) struct CheckRaysArgs {
-    /// The mesh: .obj, .ply or .stl
+    /// The mesh: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// dodecahedron, rhombicuboctahedron, octahedron:K, or a view file

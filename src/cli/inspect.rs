@@ -13,7 +13,7 @@ use crate::{
 /// Say what a mesh file holds
 #[derive(Debug, clap::Args)]
 pub(super) struct InspectArgs {
-    /// The mesh: .obj, .ply or .stl
+    /// The mesh: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
 }

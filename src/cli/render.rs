@@ -19,7 +19,7 @@ use crate::{
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::views())]
 pub(super) struct RenderArgs {
-    /// The mesh: .obj, .ply or .stl; ids are 1 + the number of the triangle in the file
+    /// The mesh: .obj, .ply, .stl, .glb or .gltf; ids are 1 + the number of the triangle in the file
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Folder for view-NN-BUFFER.png (ids and depth: .npy) and scene.json; made if missing

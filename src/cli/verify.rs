@@ -30,7 +30,7 @@ original triangle without a gap, and that no point and what stands for it are se
 and by proof. Without that file only a weaker property is checked: that every original point has some point of LOW within \
 the angle.", &file_help::cells(), file_help::CORRESPONDENCE]))]
 pub(super) struct VerifyArgs {
-    /// The original mesh: .obj, .ply or .stl
+    /// The original mesh: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "REF")]
     reference: PathBuf,
     /// The simplified mesh

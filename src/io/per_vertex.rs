@@ -68,7 +68,10 @@ pub(super) fn name(kind: ChannelKind) -> String {
         ChannelKind::ColorAlpha => "colours with opacity".into(),
         ChannelKind::Tangent => "tangents".into(),
         ChannelKind::Skin(set) => format!("joints and weights (set {set})"),
-        ChannelKind::Delta(n) => format!("morph target {}", n / 3),
+        ChannelKind::Delta(n) => {
+            let of = ["positions", "normals", "tangents"][usize::from(n % 3)];
+            format!("{of} of morph target {}", n / 3)
+        }
         ChannelKind::Custom { number, .. } => format!("custom attribute {number}"),
     }
 }

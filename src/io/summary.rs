@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Encoding, Format, Loaded};
+use super::{Encoding, Format, Loaded, per_vertex};
 use crate::{mesh::ChannelKind, num::Precision};
 
 /// The contents of a file by number and kind, as `inspect` tells them.
@@ -24,7 +24,10 @@ pub struct Summary {
     pub wedges: usize,
     /// Kinds of the attributes.
     pub channels: Vec<ChannelKind>,
-    /// Names of the materials, with the number of triangles of each.
+    /// Names of the attributes that only the file knows, by number.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub customs: Vec<String>,
+    /// Names of the materials, or of the parts of a document, with the number of triangles of each.
     pub materials: Vec<(String, usize)>,
     /// Files that define them.
     pub libraries: Vec<String>,
@@ -57,6 +60,7 @@ impl Summary {
                 .iter()
                 .map(|c| c.kind)
                 .collect(),
+            customs: (mesh.materials().asset.as_ref()).map_or_else(Vec::new, |a| a.customs.clone()),
             materials: names.iter().cloned().zip(counts).collect(),
             libraries: mesh.materials().libraries.clone(),
             notes: loaded.notes.clone(),
@@ -83,17 +87,22 @@ impl Summary {
         );
         // Writing to a String cannot fail.
         for kind in &self.channels {
-            let _ = writeln!(
-                text,
-                "attribute           {}",
-                super::per_vertex::name(*kind)
-            );
+            let custom = match kind {
+                ChannelKind::Custom { number, .. } => self.customs.get(usize::from(*number)),
+                _ => None,
+            };
+            let name = custom.cloned().unwrap_or_else(|| per_vertex::name(*kind));
+            let _ = writeln!(text, "attribute           {name}");
         }
         if !self.channels.is_empty() {
             let _ = writeln!(text, "wedges              {}", self.wedges);
         }
+        let word = match self.format {
+            Format::Glb | Format::Gltf => "part    ",
+            Format::Obj | Format::Ply | Format::Stl => "material",
+        };
         for (name, count) in &self.materials {
-            let _ = writeln!(text, "material            {name}: {count} triangles");
+            let _ = writeln!(text, "{word}            {name}: {count} triangles");
         }
         for library in &self.libraries {
             let _ = writeln!(text, "material library    {library}");

@@ -38,7 +38,7 @@ The report has bound_deg (the guarantee), attained_deg (what is seen of a point:
 the viewpoint), pieces; with --heuristics: vertices_deg, edges_deg; with --switch-*: distance_bound, switch_distance.",
     &file_help::cells(), file_help::CORRESPONDENCE]))]
 pub(super) struct BoundArgs {
-    /// The original: .obj, .ply or .stl
+    /// The original: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "REF")]
     reference: PathBuf,
     /// The mesh that stands for it

@@ -26,7 +26,7 @@ samples), worst, distance_mean, distance_rms, distance_max, views[]; with --imag
 root of the summed squared differences in levels, equation 5.11 of Zhang & Turk 2002), rms (the same per pixel, \
 comparable between sizes), squared_error, views (20).", &file_help::views()]))]
 pub(super) struct CompareArgs {
-    /// The reference: a mesh (.obj, .ply, .stl) or an image (.png; .npy of ids or depths)
+    /// The reference: a mesh (.obj, .ply, .stl, .glb, .gltf) or an image (.png; .npy of ids or depths)
     #[arg(value_name = "REF")]
     reference: PathBuf,
     /// The candidates to compare with it, of the same kind
@@ -77,7 +77,7 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
     let first = images.next() == Some(true);
     if images.any(|image| image != first) {
         return Err(Error::Usage(
-            "an image cannot be compared with a mesh; give only images (.png, .npy) or only meshes (.obj, .ply, .stl)"
+            "an image cannot be compared with a mesh; give only images (.png, .npy) or only meshes (.obj, .ply, .stl, .glb, .gltf)"
                 .into(),
         ));
     }

@@ -43,7 +43,7 @@ are the larger of both ways, in % of the diagonal of the original's bounding box
 a method has than the first one, in %; 0 where neither has any. Its mean leaves out levels that either did not reach. \
 Folds are kept at every level, as by simplify --keep-folds.", file_help::PARTIAL]))]
 pub(super) struct LevelsArgs {
-    /// The mesh to simplify: .obj, .ply or .stl
+    /// The mesh to simplify: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Folder for the results; made if missing

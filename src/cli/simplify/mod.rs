@@ -36,7 +36,7 @@ use view_bound_args::ViewBoundArgs;
 #[command(after_long_help = file_help::paragraphs(&[&file_help::cells(), &file_help::views(), file_help::HISTORY, file_help::PARTIAL, file_help::CORRESPONDENCE]))]
 #[command(group(ArgGroup::new("amount").args(["triangles", "ratio"])))]
 pub(super) struct SimplifyArgs {
-    /// The mesh to simplify: .obj, .ply or .stl
+    /// The mesh to simplify: .obj, .ply, .stl, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Where to write the result; an existing file is replaced

@@ -26,9 +26,9 @@ const SUPPORTED: &[&str] = &[
     "KHR_xmp_json_ld",
 ];
 
-/// What to do about a mesh under Draco compression.
-pub(super) const DRACO: &str = "Draco compression (KHR_draco_mesh_compression) is not supported; open the file in \
-    Blender and export it without compression";
+/// What to do about a mesh under Draco compression. Version 4.5 of this tool was seen to decode it.
+pub(super) const DRACO: &str = "Draco compression (KHR_draco_mesh_compression) is not supported; decode the file first: \
+                                npx @gltf-transform/cli copy in.glb out.glb";
 
 /// The parts of a document that a mesh is made of. Unknown members are left to the raw text.
 #[derive(Debug, Default)]

@@ -24,7 +24,7 @@ use self::{attributes::Channels, buffers::Views, document::Document};
 use crate::{
     Error, Result,
     io::{Encoding, Loaded},
-    mesh::{Asset, Attributes, Materials, Mesh, MeshParts},
+    mesh::{Asset, Attributes, Mesh, MeshParts},
     num::Precision,
 };
 

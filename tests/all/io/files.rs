@@ -109,7 +109,7 @@ fn content_wins_over_a_wrong_name_and_says_so() {
     assert_eq!(io::read(&path).expect_err("noise").exit_code(), 3);
     let path = folder.path().join("a.glb");
     fs::write(&path, b"glTF\x02\0\0\0").expect("writable");
-    assert_eq!(io::read(&path).expect_err("glTF").exit_code(), 4);
+    assert_eq!(io::read(&path).expect_err("cut off").exit_code(), 3);
     assert_eq!(
         io::read(&folder.path().join("gone.ply"))
             .expect_err("gone")

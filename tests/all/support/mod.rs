@@ -3,6 +3,7 @@
 mod command;
 mod folds;
 mod geometry;
+mod gltf;
 pub(crate) mod meshes;
 mod models;
 pub(crate) mod oracle;
@@ -19,8 +20,9 @@ pub(crate) use folds::faults;
 pub(crate) use geometry::{
     at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
 };
+pub(crate) use gltf::GltfBuilder;
 pub(crate) use meshes::{framed, live, scene_of, snapshot};
-pub(crate) use models::{model, read_model};
+pub(crate) use models::{asset_file, model, read_model};
 pub(crate) use oracle::say;
 pub(crate) use progress::{Impatient, Recorder, StopsAfter};
 pub(crate) use property::{bound_cases, bound_count, bound_seed, bounded, cases};

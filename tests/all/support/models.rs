@@ -11,8 +11,17 @@ use super::oracle::say;
 
 /// The file of a model; a line that says why a test is skipped where it is not there.
 fn model_file(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("LODMARK_MODELS").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/models"),
+    file("LODMARK_MODELS", "../shared/models", name)
+}
+
+/// The file of a textured asset, from the folder that `LODMARK_ASSETS` names, else `../shared/assets`.
+pub(crate) fn asset_file(name: &str) -> Option<PathBuf> {
+    file("LODMARK_ASSETS", "../shared/assets", name)
+}
+
+fn file(variable: &str, default: &str, name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os(variable).map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join(default),
         PathBuf::from,
     );
     let path = folder.join(name);
