@@ -22,7 +22,7 @@ use crate::{
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::PARTIAL)]
 pub(in crate::rooms::cli) struct VisibilityArgs {
-    /// The mesh: .obj, .ply or .stl; it is brought into canonical order first
+    /// The mesh: .obj, .ply, .stl, .glb or .gltf; it is brought into canonical order first
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]

@@ -10,9 +10,10 @@ use std::{
 
 use super::{
     document::{Buffer, Document, Meshopt, named},
+    meshopt::{self, Filter, Mode},
     placed, wrong,
 };
-use crate::{Error, Result, encode::bytes};
+use crate::{Result, encode::bytes};
 
 /// Values that any file may ask for, and those it may ask for with every byte of its buffers. Primitives may share
 /// accessors, so that a small file can declare a surface without end.
@@ -259,14 +260,19 @@ impl<'a> Views<'a> {
 
 /// Decodes a compressed view.
 fn decode(meshopt: &Meshopt, stream: &[u8]) -> Result<Vec<u8>> {
-    let _ = (
-        meshopt.byte_stride,
-        meshopt.count,
-        &meshopt.mode,
-        &meshopt.filter,
-        stream,
-    );
-    Err(Error::Unsupported(
-        "meshopt compression is not supported yet".into(),
-    ))
+    let mode = match meshopt.mode.as_str() {
+        "ATTRIBUTES" => Mode::Attributes,
+        "TRIANGLES" => Mode::Triangles,
+        "INDICES" => Mode::Indices,
+        other => return Err(wrong(format!("unknown mode `{}`", shown(other)))),
+    };
+    let filter = match meshopt.filter.as_deref() {
+        None | Some("NONE") => Filter::None,
+        Some("OCTAHEDRAL") => Filter::Octahedral,
+        Some("QUATERNION") => Filter::Quaternion,
+        Some("EXPONENTIAL") => Filter::Exponential,
+        Some("COLOR") => Filter::Color,
+        Some(other) => return Err(wrong(format!("unknown filter `{}`", shown(other)))),
+    };
+    meshopt::decode(mode, filter, meshopt.count, meshopt.byte_stride, stream)
 }

@@ -33,7 +33,7 @@ use crate::{
 /// # Errors
 /// [`Error::Input`] that says what in the document is wrong; [`Error::Unsupported`] for what it requires and this reader
 /// does not know; [`Error::Io`] where the file of a buffer cannot be read.
-pub(in crate::io) fn read(bytes: &[u8], path: &Path) -> Result<Loaded> {
+pub(in crate::rooms::io) fn read(bytes: &[u8], path: &Path) -> Result<Loaded> {
     read_document(bytes, path).map_err(|error| match error {
         Error::Input {
             path: ours,
