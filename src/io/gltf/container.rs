@@ -102,6 +102,8 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
 }
 
 fn text(bytes: &[u8]) -> Result<&str> {
+    // Some editors begin a text with the mark of its encoding.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
         wrong(format!(
             "byte {} of the JSON text is not UTF-8; expected a glTF document",

@@ -36,10 +36,12 @@ use crate::{
 pub(in crate::rooms::io) fn read(bytes: &[u8], path: &Path) -> Result<Loaded> {
     read_document(bytes, path).map_err(|error| match error {
         Error::Input {
-            path: ours,
+            path: known,
             message,
-        } if ours.as_os_str() == "-" => Error::input(path, message),
-        Error::Unsupported(message) => Error::Unsupported(format!("{}: {message}", path.display())),
+        } if known.as_os_str() == "-" => Error::input(path, shortened(&message)),
+        Error::Unsupported(message) => {
+            Error::Unsupported(format!("{}: {}", path.display(), shortened(&message)))
+        }
         other => other,
     })
 }
@@ -110,6 +112,11 @@ fn mesh(document: &Document, mut asset: Asset, notes: &mut Vec<String>) -> Resul
 /// A fault of the document.
 fn wrong(message: impl Into<String>) -> Error {
     Error::content(message)
+}
+
+/// The start of a sentence: names in a document may be as long as the file.
+fn shortened(message: &str) -> String {
+    message.chars().take(600).collect()
 }
 
 /// The same fault, with the place that it concerns.

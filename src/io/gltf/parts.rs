@@ -7,7 +7,7 @@ use super::{
     document::{Document, Primitive, named},
     scene::Shown,
 };
-use crate::{Result, mesh::AssetPart};
+use crate::{Result, io::words, mesh::AssetPart};
 
 /// The primitives of triangles that the scene shows, in the order of the document; notes say what is left as it is.
 ///
@@ -100,7 +100,7 @@ pub(super) fn note_attributes(
     for (name, count) in left_out.iter().take(8) {
         notes.push(format!(
             "{} stays only where a primitive does not change, in primitives: {count}",
-            name.escape_default()
+            words::shown(name.as_bytes()).escape_default()
         ));
     }
     if more > 0 {

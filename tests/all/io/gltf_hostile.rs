@@ -294,6 +294,19 @@ fn said_of(change: &dyn Fn(&mut Value)) -> Result<String, String> {
 }
 
 #[test]
+fn names_as_long_as_the_file_do_not_fill_a_message() {
+    let long = "n".repeat(100_000);
+    for change in [
+        &(|json: &mut Value| json["accessors"][0]["type"] = json!(long)) as &dyn Fn(&mut Value),
+        &|json| json["accessors"][0]["count"] = json!(long),
+        &|json| json["extensionsRequired"] = json!([long]),
+        &|json| json["asset"]["version"] = json!(long),
+    ] {
+        said(change);
+    }
+}
+
+#[test]
 fn sparse_indices_out_of_order_or_range_are_refused() {
     for (bytes, expected) in [
         ([3, 1], "increasing"),
