@@ -8,6 +8,7 @@ pub mod correspondence;
 pub mod envelope;
 pub mod face;
 pub mod heuristics;
+pub mod nearest_triangle;
 pub mod planar;
 pub mod point;
 pub mod region;

@@ -7,6 +7,7 @@ use crate::{
     Error, Result, Silent,
     bound::{
         heuristics,
+        nearest_triangle::{NearestTriangle, originals},
         planar::Aperture,
         point::{error, extent},
         region,
@@ -15,7 +16,7 @@ use crate::{
         view_cell::{ViewCell, file},
     },
     mesh::generate,
-    simplify::{NearestTriangle, Options, Target, originals, simplify},
+    simplify::{Options, Target, simplify},
 };
 
 fn at(x: f64, y: f64, z: f64) -> DVec3 {

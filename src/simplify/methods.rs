@@ -83,7 +83,7 @@ pub enum Report {
 }
 
 macro_rules! methods {
-    ($($(#[doc = $doc:literal])+ $name:ident($options:ty) => $text:literal,)+) => {
+    ($($(#[doc = $doc:literal])+ $name:ident($options:ty) => $text:literal, $default:expr;)+) => {
         /// Which method, with its options.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case", tag = "name")]
@@ -102,6 +102,11 @@ macro_rules! methods {
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$name => $text,)+ }
             }
+
+            /// The method with its defaults; `None` where it needs a bound from the user.
+            pub(crate) fn defaults(self) -> Option<MethodOptions> {
+                match self { $(Self::$name => $default,)+ }
+            }
         }
 
         impl MethodOptions {
@@ -109,6 +114,11 @@ macro_rules! methods {
             #[must_use]
             pub const fn name(&self) -> &'static str {
                 match self { $(Self::$name(_) => $text,)+ }
+            }
+
+            /// True where the method keeps to a bound of its own.
+            pub(crate) fn is_bounded(&self) -> bool {
+                self.as_run().error() == ErrorLimit::Own
             }
 
             pub(super) fn as_run(&self) -> &dyn MethodRun {
@@ -126,15 +136,15 @@ macro_rules! methods {
 
 methods! {
     /// By the change of pictures (Lindstrom & Turk 2000).
-    Image(ImageOptions) => "image",
+    Image(ImageOptions) => "image", Some(ImageOptions::default().into());
     /// By swept volumes (Lindstrom & Turk 1998/99).
-    Memoryless(MemorylessOptions) => "memoryless",
+    Memoryless(MemorylessOptions) => "memoryless", Some(MemorylessOptions::default().into());
     /// By distances to planes (Garland & Heckbert 1997/98).
-    Quadric(QuadricOptions) => "quadric",
+    Quadric(QuadricOptions) => "quadric", Some(QuadricOptions::default().into());
     /// By distances to planes, weighted by how visible they are (Zhang & Turk 2002).
-    Visibility(VisibilityOptions) => "visibility",
+    Visibility(VisibilityOptions) => "visibility", Some(VisibilityOptions::default().into());
     /// Within a distance of the input, guaranteed (after Cox & Chibelushi 2005).
-    Tolerance(ToleranceOptions) => "tolerance",
+    Tolerance(ToleranceOptions) => "tolerance", None;
     /// Within an angle for all viewers in a cell (after Eisemann & Décoret 2007).
-    ViewBounded(ViewBoundedOptions) => "view-bounded",
+    ViewBounded(ViewBoundedOptions) => "view-bounded", None;
 }

@@ -14,13 +14,13 @@ use crate::{
     bound::{
         correspondence,
         heuristics::{self, Claims},
+        nearest_triangle::{NearestTriangle, originals},
         surface::{self, Effort, Given, Measure, Pair, SurfaceBound},
         view_cell::{ViewCell, file},
     },
     encode::bytes,
     mesh::{self, Mesh},
     num::{Each, Frame},
-    simplify::{NearestTriangle, originals},
     view::frame_of,
 };
 

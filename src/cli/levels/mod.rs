@@ -117,8 +117,7 @@ impl LevelsArgs {
                 ));
             }
         }
-        let bounds = [MethodName::Tolerance, MethodName::ViewBounded];
-        if let Some(&method) = self.methods.iter().find(|m| bounds.contains(m)) {
+        if let Some(&method) = self.methods.iter().find(|m| m.defaults().is_none()) {
             return Err(bounded(method));
         }
         if !self.methods.contains(&MethodName::Visibility)
@@ -166,13 +165,8 @@ impl LevelsArgs {
             [] => return Err(Error::Internal("no levels".into())),
         };
         let amount = Target::Triangles(coarsest as u64);
-        let mut options = match method {
-            MethodName::Image => RunOptions::image(amount),
-            MethodName::Memoryless => RunOptions::memoryless(amount),
-            MethodName::Quadric => RunOptions::quadric(amount),
-            MethodName::Visibility => RunOptions::visibility(amount),
-            MethodName::Tolerance | MethodName::ViewBounded => return Err(bounded(method)),
-        };
+        let own = method.defaults().ok_or_else(|| bounded(method))?;
+        let mut options = RunOptions::new(own, amount);
         options.unfold = false;
         if self.topology_free {
             options.rules.topology = Topology::Free;

@@ -21,7 +21,7 @@ use crate::{
     io,
     mesh::content_sha256,
     simplify::{
-        MethodName, MethodOptions, Options as RunOptions, Stop, Target,
+        MethodName, Options as RunOptions, Stop, Target,
         image::{Comparison, PolishCounters},
         simplify_guided, simplify_with,
         tolerance::Guarantee,
@@ -181,10 +181,8 @@ pub(super) fn run(
         None => simplify_with(&mesh, &resolved, terminal)?,
     };
     run_log::tell(&options.input, triangles_in, &outcome, terminal);
-    let bounded = matches!(
-        outcome.options.method,
-        MethodOptions::ViewBounded(_) | MethodOptions::Tolerance(_)
-    ) && outcome.options.target == Target::ErrorOnly;
+    let own = &outcome.options;
+    let bounded = own.method.is_bounded() && own.target == Target::ErrorOnly;
     let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
     if options.strict && short && !bounded {
         return Err(Error::TargetNotReached(format!(

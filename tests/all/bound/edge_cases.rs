@@ -8,6 +8,7 @@ use lodmark::{
     Silent,
     bound::{
         correspondence::Correspondence,
+        nearest_triangle::{NearestTriangle, originals},
         planar::Aperture,
         region::{profile, profile_normal, shell},
         surface::{Effort, Measure, measure},
@@ -17,7 +18,6 @@ use lodmark::{
     io,
     mesh::{Mesh, MeshParts, canonical, generate},
     num::Precision,
-    simplify::{NearestTriangle, originals},
 };
 use tempfile::TempDir;
 

@@ -11,6 +11,7 @@ use lodmark::{
     Silent,
     bound::{
         heuristics,
+        nearest_triangle::{NearestTriangle, originals},
         planar::Aperture,
         region::profile,
         surface::{Effort, Given, Measure, Pair, SurfaceBound, measure},
@@ -18,7 +19,6 @@ use lodmark::{
         view_cell::ViewCell,
     },
     mesh::Mesh,
-    simplify::{NearestTriangle, originals},
 };
 use proptest::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use super::surface::{Pair, Replacement};
 use crate::{
-    bound::surface::{Pair, Replacement},
     geometry::{TriangleTree, closest_point},
     mesh::Mesh,
     num::Each,
