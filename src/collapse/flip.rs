@@ -31,8 +31,7 @@ pub fn flip(
     let &[f, g] = patch.removed.as_slice() else {
         return Err(Refusal::Link);
     };
-    let at =
-        |face: &PatchFace| ends.each(|v| face.corners.iter().position(|&c| c == v).unwrap_or(0));
+    let at = |face: &PatchFace| ends.each(|v| face.corner(v).unwrap_or(0));
     let faces = [(f.id, f.wedges), (g.id, g.wedges)];
     if wedge::differ(live, faces, [at(&f), at(&g)], |_| true) {
         return Err(Refusal::FeaturePinch);

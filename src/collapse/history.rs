@@ -178,8 +178,8 @@ impl Observer for Recorder {
         };
         if let (Some((vertex, _)), true) = (to, history.header.stride > 0) {
             for face in &patch.added {
-                let apex = face.corners.iter().position(|&v| v == vertex);
-                history.corners.extend(apex.map(|k| face.wedges[k]));
+                let wedge = face.corner(vertex).map(|k| face.wedges[k]);
+                history.corners.extend(wedge);
             }
             history.rows.extend_from_slice(&patch.rows);
         }

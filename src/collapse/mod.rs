@@ -6,8 +6,8 @@
 //! [`Method`] where the new vertex lies and what it costs, and the [`Engine`] which edge is next.
 //!
 //! The way of an edge from the queue to its commit:
-//! 1. `engine`: the edge with the smallest [`Key`] stands at the front of the queue (`engine/queue`, `engine/heap`).
-//! 2. Where its key is not exact, `engine/evaluator` gathers its [`EdgeStar`] from the lists of the mesh (`live`).
+//! 1. `engine`: the edge with the smallest [`Key`] stands at the front of the queue (`engine/queue`).
+//! 2. Where its key is not exact, the engine gathers its [`EdgeStar`] from the lists of the mesh (`live`).
 //! 3. [`Site::new`] asks [`legality`] where the rules allow the new vertex at all.
 //! 4. [`Method::propose`] places it; [`Site::admit`] rounds it to the file's precision and tests shapes and folds
 //!    (`fold`); the method prices the collapse, from its [`Patch`] where the cost needs the faces afterwards. The edge

@@ -20,6 +20,14 @@ pub struct PatchFace {
     pub wedges: [u32; 3],
 }
 
+impl PatchFace {
+    /// The corner where a vertex is.
+    #[inline]
+    pub fn corner(&self, vertex: u32) -> Option<usize> {
+        self.corners.iter().position(|&v| v == vertex)
+    }
+}
+
 /// A vertex that changes its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {

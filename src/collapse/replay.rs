@@ -188,7 +188,7 @@ impl<'a> Replay<'a> {
             return Err(format!("names wedge {w}, but there are {wedges}"));
         }
         for (face, &wedge) in self.patch.added.iter_mut().zip(entry.corners) {
-            if let Some(k) = face.corners.iter().position(|&v| v == vertex) {
+            if let Some(k) = face.corner(vertex) {
                 face.wedges[k] = wedge;
             }
         }

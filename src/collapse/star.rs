@@ -139,8 +139,7 @@ impl Star {
     /// True where the faces do not hang together through edges: two sheets that touch in a point.
     fn is_pinched(&self) -> bool {
         pinch::is_pinched(self.faces.iter().map(|f| {
-            let apex = f.corners.iter().position(|&v| v == self.vertex);
-            let apex = apex.unwrap_or(0);
+            let apex = f.corner(self.vertex).unwrap_or(0);
             [f.corners[(apex + 1) % 3], f.corners[(apex + 2) % 3]]
         }))
     }
@@ -152,10 +151,7 @@ impl Star {
         let inside = self.neighbors.iter().filter(|&&(_, faces)| faces == 2);
         let mut inside = inside.map(|&(v, _)| v);
         inside.any(|v| {
-            let at = |f: &PatchFace| {
-                let corner = |v| f.corners.iter().position(|&c| c == v);
-                Some([corner(self.vertex)?, corner(v)?])
-            };
+            let at = |f: &PatchFace| Some([f.corner(self.vertex)?, f.corner(v)?]);
             let mut two = self.faces.iter().filter_map(|f| Some((f, at(f)?)));
             let (Some((f, f_at)), Some((g, g_at))) = (two.next(), two.next()) else {
                 return false;
@@ -168,8 +164,8 @@ impl Star {
     /// Interpolates the attributes of the vertex at the foot of its new position.
     fn carry(&mut self, live: &LiveMesh, to: DVec3, patch: &mut Patch) {
         let rows = live.rows();
-        let corner = |f: &PatchFace| f.corners.iter().position(|&v| v == self.vertex);
-        let apexes = self.faces.iter().filter_map(|f| Some((f, corner(f)?)));
+        let faces = self.faces.iter();
+        let apexes = faces.filter_map(|f| Some((f, f.corner(self.vertex)?)));
         let Some((face, weights)) = self.foot(live, to) else {
             return;
         };

@@ -19,21 +19,16 @@ pub struct PixelRect {
 
 impl PixelRect {
     /// No pixel at all; the neutral element of [`PixelRect::union`].
-    pub const EMPTY: Self = Self {
-        x0: i32::MAX,
-        y0: i32::MAX,
-        x1: i32::MIN,
-        y1: i32::MIN,
-    };
+    pub const EMPTY: Self = Self::new([i32::MAX, i32::MIN], [i32::MAX, i32::MIN]);
+
+    /// The pixels of some columns and rows, each from the first to one past the last.
+    const fn new([x0, x1]: [i32; 2], [y0, y1]: [i32; 2]) -> Self {
+        Self { x0, y0, x1, y1 }
+    }
 
     /// All pixels of an image.
     pub const fn image(width: u32, height: u32) -> Self {
-        Self {
-            x0: 0,
-            y0: 0,
-            x1: width as i32,
-            y1: height as i32,
-        }
+        Self::new([0, width as i32], [0, height as i32])
     }
 
     /// Pixels whose centres lie in a box of sub-pixels, borders included; the snapped corners of a triangle span it.
@@ -46,23 +41,14 @@ impl PixelRect {
         let half = bits.scale() / 2;
         let first = |v: i32| (v - half + bits.scale() - 1) >> bits.bits();
         let last = |v: i32| (v - half) >> bits.bits();
-        Self {
-            x0: first(x_min),
-            y0: first(y_min),
-            x1: last(x_max) + 1,
-            y1: last(y_max) + 1,
-        }
+        let columns = [first(x_min), last(x_max) + 1];
+        Self::new(columns, [first(y_min), last(y_max) + 1])
     }
 
     /// One pixel.
     #[inline]
     pub const fn pixel(x: i32, y: i32) -> Self {
-        Self {
-            x0: x,
-            y0: y,
-            x1: x + 1,
-            y1: y + 1,
-        }
+        Self::new([x, x + 1], [y, y + 1])
     }
 
     /// True where it has no pixel.

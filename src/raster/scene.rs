@@ -36,10 +36,9 @@ impl Scene {
         if let Some(channel) = channel {
             let color = |wedge: u32| {
                 let v = attributes.value(channel, wedge);
-                if v[0].is_nan() {
-                    [1.0; 3]
-                } else {
-                    [v[0], v[1], v[2]]
+                match v[0].is_nan() {
+                    true => [1.0; 3],
+                    false => [v[0], v[1], v[2]],
                 }
             };
             scene.colors = attributes.corners().iter().map(|c| c.map(color)).collect();
@@ -160,11 +159,5 @@ impl Scene {
             screen: positions.map(|p| projector.screen(p)),
             paint,
         }
-    }
-
-    /// The corner colours of a triangle; `None` where everything is white.
-    #[inline]
-    pub(super) fn corner_colors(&self, t: usize) -> Option<&[[f64; 3]; 3]> {
-        self.colors.get(t)
     }
 }

@@ -18,7 +18,7 @@ use crate::{Error, Progress, Result, parallel};
 const REPORT_EVERY: u64 = 256;
 
 /// A mesh and the queue of its collapses.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Engine {
     live: LiveMesh,
     rules: Rules,
@@ -48,19 +48,8 @@ impl Engine {
             live,
             rules,
             schedule,
-            plan: Plan::default(),
-            cost_limit: None,
-            rank_every: 0,
-            queue: None,
-            counters: Counters::default(),
-            star: EdgeStar::default(),
             scratch: MethodScratch::alone(),
-            pool: Vec::new(),
-            patch: Patch::default(),
-            gathered: None,
-            changes: Changes::default(),
-            inherited: Vec::new(),
-            touched: Vec::new(),
+            ..Self::default()
         }
     }
 

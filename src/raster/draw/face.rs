@@ -54,21 +54,20 @@ impl Face {
     ) -> Drawn {
         let corners = self.positions.map(|p| projector.clip(p));
         let (bits, image) = (projector.bits(), projector.image());
+        let mut draw = |screen, paint: Paint| {
+            if let Some(setup) = Setup::new(screen, bits, cull, image) {
+                visit(&setup, &paint);
+            }
+        };
         let complete = match self.paint {
             Paint::Flat(_) => clip(projector, corners, [[]; 3], |piece| {
-                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
-                    visit(&setup, &self.paint);
-                }
+                draw(piece.map(|c| c.0), self.paint);
             }),
             Paint::Smooth(attributes) => clip(projector, corners, attributes, |piece| {
-                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
-                    visit(&setup, &Paint::Smooth(piece.map(|c| c.1)));
-                }
+                draw(piece.map(|c| c.0), Paint::Smooth(piece.map(|c| c.1)));
             }),
             Paint::Colored(attributes) => clip(projector, corners, attributes, |piece| {
-                if let Some(setup) = Setup::new(piece.map(|c| c.0), bits, cull, image) {
-                    visit(&setup, &Paint::Colored(piece.map(|c| c.1)));
-                }
+                draw(piece.map(|c| c.0), Paint::Colored(piece.map(|c| c.1)));
             }),
         };
         if complete {

@@ -77,7 +77,7 @@ impl<'a> Shading<'a> {
     /// The paint of a whole triangle.
     fn paint(&mut self, t: usize) -> Paint {
         let scene = self.scene;
-        let colors = scene.corner_colors(t);
+        let colors = scene.colors().get(t);
         if self.intensities.is_empty() {
             let g = FaceGeometry::new(scene.points(t));
             return Paint::flat(self.shader.intensity(g.centroid, g.normal), colors);

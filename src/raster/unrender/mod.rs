@@ -9,14 +9,11 @@ mod scene_edit;
 
 pub use buckets::BucketEngine;
 pub use layers::LayerEngine;
-pub use scene_edit::SceneEdit;
+pub use scene_edit::{Model, SceneEdit};
 
 use std::{any::Any, fmt};
 
-use glam::DVec3;
-
-use super::{Grid, SampleKey, Scene};
-use crate::view::{Interpolation, ViewSet};
+use super::{Grid, SampleKey};
 
 /// The views that an evaluation takes into account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,11 +42,8 @@ impl ViewSubset {
 /// samples, in the reference and in the picture. Sums of integers have no order, so views may be looked at in
 /// parallel.
 pub trait Unrender: fmt::Debug + Send + Sync {
-    /// Buffers for one thread of several that evaluate at the same time.
-    fn scratch(&self) -> UnrenderScratch;
-
-    /// Buffers for evaluations that nothing else runs beside: views may then be divided among threads.
-    fn lone_scratch(&self) -> UnrenderScratch;
+    /// Buffers for one thread; where it evaluates `alone`, views may be divided among threads.
+    fn scratch(&self, alone: bool) -> UnrenderScratch;
 
     /// Returns what the change would add to the sum of squared differences over `views`, without making it.
     fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64;
@@ -76,72 +70,5 @@ impl UnrenderScratch {
     fn of<T: Any>(&mut self) -> &mut T {
         let own = self.0.downcast_mut();
         own.expect("the scratch was made by this engine")
-    }
-}
-
-/// `(y0 - new)^2 - (y0 - old)^2`.
-#[inline]
-pub(super) fn difference(y0: u16, old: u16, new: u16) -> i64 {
-    let (y0, old, new) = (i64::from(y0), i64::from(old), i64::from(new));
-    (new - old) * (new + old - 2 * y0)
-}
-
-/// The mesh that the pictures show: what does not depend on the view.
-#[derive(Clone, Debug)]
-pub struct Model {
-    pub(super) positions: Vec<DVec3>,
-    /// Vertices by triangle id.
-    pub(super) corners: Vec<[u32; 3]>,
-    /// Unit vertex normals; empty where no view needs them.
-    pub(super) normals: Vec<DVec3>,
-    /// Corner colours by triangle id; empty where everything is white.
-    pub(super) colors: Vec<[[f64; 3]; 3]>,
-}
-
-impl Model {
-    /// The model of a scene whose ids count from 0 without gaps.
-    pub fn new(scene: &Scene, set: &ViewSet) -> Self {
-        let gouraud = set
-            .views
-            .iter()
-            .any(|v| v.shading.interpolation == Interpolation::Gouraud);
-        Self {
-            positions: scene.positions().to_vec(),
-            corners: scene.triangles().to_vec(),
-            normals: if gouraud {
-                scene.normals().to_vec()
-            } else {
-                Vec::new()
-            },
-            colors: scene.colors().to_vec(),
-        }
-    }
-
-    pub(super) fn apply(&mut self, edit: &SceneEdit) {
-        for &(v, p) in &edit.moved {
-            self.positions[v as usize] = p;
-        }
-        if !self.normals.is_empty() {
-            let shaded = |v: u32| edit.normals.iter().any(|n| n.0 == v);
-            debug_assert!(edit.moved.iter().all(|m| shaded(m.0)));
-            for &(v, n) in &edit.normals {
-                self.normals[v as usize] = n;
-            }
-        }
-        for face in edit.after() {
-            self.corners[face.id as usize] = face.corners.map(|c| c.vertex);
-            if let Some(colors) = self.colors.get_mut(face.id as usize) {
-                *colors = face.colors;
-            }
-        }
-    }
-
-    /// The position of a vertex after the change.
-    #[inline]
-    pub(super) fn position_after(&self, edit: &SceneEdit, vertex: u32) -> DVec3 {
-        edit.moved
-            .iter()
-            .find(|m| m.0 == vertex)
-            .map_or_else(|| self.positions[vertex as usize], |m| m.1)
     }
 }

@@ -1,8 +1,12 @@
-//! [`SceneEdit`]: a change of the mesh as the pictures see it, with all that is the same in every view.
+//! [`SceneEdit`]: a change of the mesh as the pictures see it, with all that is the same in every view; and the [`Model`]
+//! that it changes.
 
 use glam::DVec3;
 
-use crate::raster::FaceGeometry;
+use crate::{
+    raster::{FaceGeometry, Scene},
+    view::{Interpolation, ViewSet},
+};
 
 /// No entry.
 const NONE: u32 = u32::MAX;
@@ -45,7 +49,7 @@ pub(super) struct EditedFace {
 ///
 /// Filled after [`SceneEdit::clear`]: first what moves and the normals; then the triangles that come
 /// ([`SceneEdit::add`]) or look different ([`SceneEdit::restyle`]), and those that go ([`SceneEdit::remove`]).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SceneEdit {
     /// New positions; every triangle at such a vertex goes.
     pub moved: Vec<(u32, DVec3)>,
@@ -74,17 +78,10 @@ impl SceneEdit {
     /// Buffers for a scene with this number of triangles; `flat` where a view needs the geometry of faces.
     pub fn new(triangles: usize, flat: bool) -> Self {
         Self {
-            moved: Vec::new(),
-            normals: Vec::new(),
-            gone: Vec::new(),
-            fresh: Vec::new(),
-            restyled: Vec::new(),
-            rim: Vec::new(),
-            inside: Vec::new(),
-            movers: Vec::new(),
             // One more for samples that nothing covers.
             fates: vec![0; triangles + 1],
             flat,
+            ..Self::default()
         }
     }
 
@@ -220,4 +217,71 @@ fn note(list: &mut Vec<u32>, entry: u32) {
     if !list.contains(&entry) {
         list.push(entry);
     }
+}
+
+/// The mesh that the pictures show: what does not depend on the view.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(super) positions: Vec<DVec3>,
+    /// Vertices by triangle id.
+    pub(super) corners: Vec<[u32; 3]>,
+    /// Unit vertex normals; empty where no view needs them.
+    pub(super) normals: Vec<DVec3>,
+    /// Corner colours by triangle id; empty where everything is white.
+    pub(super) colors: Vec<[[f64; 3]; 3]>,
+}
+
+impl Model {
+    /// The model of a scene whose ids count from 0 without gaps.
+    pub fn new(scene: &Scene, set: &ViewSet) -> Self {
+        let gouraud = set
+            .views
+            .iter()
+            .any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        Self {
+            positions: scene.positions().to_vec(),
+            corners: scene.triangles().to_vec(),
+            normals: if gouraud {
+                scene.normals().to_vec()
+            } else {
+                Vec::new()
+            },
+            colors: scene.colors().to_vec(),
+        }
+    }
+
+    pub(super) fn apply(&mut self, edit: &SceneEdit) {
+        for &(v, p) in &edit.moved {
+            self.positions[v as usize] = p;
+        }
+        if !self.normals.is_empty() {
+            let shaded = |v: u32| edit.normals.iter().any(|n| n.0 == v);
+            debug_assert!(edit.moved.iter().all(|m| shaded(m.0)));
+            for &(v, n) in &edit.normals {
+                self.normals[v as usize] = n;
+            }
+        }
+        for face in edit.after() {
+            self.corners[face.id as usize] = face.corners.map(|c| c.vertex);
+            if let Some(colors) = self.colors.get_mut(face.id as usize) {
+                *colors = face.colors;
+            }
+        }
+    }
+
+    /// The position of a vertex after the change.
+    #[inline]
+    pub(super) fn position_after(&self, edit: &SceneEdit, vertex: u32) -> DVec3 {
+        edit.moved
+            .iter()
+            .find(|m| m.0 == vertex)
+            .map_or_else(|| self.positions[vertex as usize], |m| m.1)
+    }
+}
+
+/// `(y0 - new)^2 - (y0 - old)^2`.
+#[inline]
+pub(super) fn difference(y0: u16, old: u16, new: u16) -> i64 {
+    let (y0, old, new) = (i64::from(y0), i64::from(old), i64::from(new));
+    (new - old) * (new + old - 2 * y0)
 }

@@ -82,7 +82,7 @@ impl<'a> DistancePenalty<'a> {
         let mut squares = Squares::default();
         let mut near = 0;
         for face in &star.faces {
-            let k = face.corners.iter().position(|&v| v == star.vertex)?;
+            let k = face.corner(star.vertex)?;
             let tip = star.point;
             let [left, right] = [1, 2].each(|i| live.position(face.corners[(k + i) % 3]));
             let normal = (left - tip).cross(right - tip);

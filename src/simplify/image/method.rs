@@ -48,7 +48,7 @@ impl ImageDriven {
     pub fn new(pictures: Pictures, placement: MemorylessOptions, rms_limit: Option<f64>) -> Self {
         Self {
             limit: rms_limit.map(|rms| pictures.sum_of_rms(rms)),
-            scratch: pictures.lone_scratch(),
+            scratch: pictures.scratch(true),
             views: pictures.views(),
             pictures,
             placement,
@@ -124,11 +124,7 @@ impl Method for ImageDriven {
 
     fn propose(&self, site: &Site<'_>, scratch: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let scratch = scratch.of(|alone| ImageScratch {
-            pictures: if alone {
-                self.pictures.lone_scratch()
-            } else {
-                self.pictures.scratch()
-            },
+            pictures: self.pictures.scratch(alone),
             patch: Patch::default(),
         });
         let views = match site.accuracy {
@@ -143,9 +139,8 @@ impl Method for ImageDriven {
             return Review::Commit;
         };
         // The proposal's cost may be stale: ask again.
-        let cost = self
-            .pictures
-            .cost(live, patch, ViewSubset::All, &mut self.scratch);
+        let views = ViewSubset::All;
+        let cost = self.pictures.cost(live, patch, views, &mut self.scratch);
         if (self.pictures.sum() as i64 + cost) as f64 <= limit {
             Review::Commit
         } else {

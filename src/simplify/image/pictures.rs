@@ -78,12 +78,10 @@ impl Pictures {
 
     /// The sum of squared differences between the engine's pictures and those of the original.
     fn sum_from_scratch(&self, reference: &ReferenceImages) -> u64 {
-        let view = |(i, y0): (usize, &Grid<u16>)| {
+        let view = |(i, y0): (usize, &Grid<u16>)| -> u64 {
             let sums = raster::sum_samples(&self.engine.luma(i), reference.set().samples);
             let pairs = y0.values().iter().zip(sums.values());
-            pairs
-                .map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2))
-                .sum::<u64>()
+            pairs.map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2)).sum()
         };
         reference.sums().iter().enumerate().map(view).sum()
     }
@@ -114,18 +112,10 @@ impl Pictures {
         &*self.engine
     }
 
-    /// Buffers for one thread of several that evaluate at the same time.
-    pub fn scratch(&self) -> PictureScratch {
+    /// Buffers for one thread; `alone` where nothing else evaluates at the same time.
+    pub fn scratch(&self, alone: bool) -> PictureScratch {
         PictureScratch {
-            engine: self.engine.scratch(),
-            translator: Translator::new(&self.slots, self.flat),
-        }
-    }
-
-    /// Buffers for evaluations that nothing else runs beside; see [`Unrender::lone_scratch`].
-    pub fn lone_scratch(&self) -> PictureScratch {
-        PictureScratch {
-            engine: self.engine.lone_scratch(),
+            engine: self.engine.scratch(alone),
             translator: Translator::new(&self.slots, self.flat),
         }
     }
@@ -190,10 +180,8 @@ impl Slots {
             }));
         }
         let ids = (0..triangles.len() as u32).collect();
-        (
-            slots,
-            Scene::new(positions, triangles, ids).with_colors(colors),
-        )
+        let scene = Scene::new(positions, triangles, ids);
+        (slots, scene.with_colors(colors))
     }
 
     /// Corner colours of a triangle with these wedges; `rows` holds wedges that the mesh does not have yet.
@@ -239,7 +227,7 @@ impl ShadedFace {
 }
 
 /// Translates patches of the mesh to edits of the pictures; the buffers are reused.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Translator {
     /// The last patch, for an un-rendering engine.
     edit: SceneEdit,
@@ -253,8 +241,7 @@ impl Translator {
         let triangles = slots.triangles.iter().filter(|&&slot| slot != NONE).count();
         Self {
             edit: SceneEdit::new(triangles, flat || slots.color.is_some()),
-            vertices: Vec::new(),
-            faces: Vec::new(),
+            ..Self::default()
         }
     }
 

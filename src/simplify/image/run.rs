@@ -144,7 +144,7 @@ fn turn_back(original: &OriginalModel, pictures: &mut Pictures, run: &mut Run<'_
         return Ok(());
     }
     let mut following = Following {
-        scratch: pictures.lone_scratch(),
+        scratch: pictures.scratch(true),
         pictures,
         recorder: &mut run.recorder,
     };

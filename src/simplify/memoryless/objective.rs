@@ -52,7 +52,7 @@ fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Ref
 }
 
 /// The objective of an edge: sums over its star, relative to the midpoint of the edge.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Objective {
     origin: DVec3,
     normal_sum: DVec3,
@@ -88,16 +88,13 @@ impl Objective {
         let origin = star.midpoint();
         let mut sums = Self {
             origin,
-            normal_sum: DVec3::ZERO,
-            volume_sum: 0.0,
-            volume: Gradient::default(),
             boundary: (!star.boundary.is_empty()).then(|| Boundary::of(&star.boundary, origin)),
-            shape: Gradient::default(),
             weights: [
                 options.volume_weight,
                 (1.0 - options.volume_weight) * star.length2(),
             ],
             order: options.lt_order,
+            ..Self::default()
         };
         for face in &star.faces {
             let (n, l) = (face.normal, face.normal.dot(face.points[0] - origin));
@@ -121,14 +118,11 @@ impl Objective {
         volume_weight: f64,
     ) -> Self {
         Self {
-            origin: DVec3::ZERO,
             normal_sum,
             volume_sum,
             volume,
-            boundary: None,
-            shape: Gradient::default(),
             weights: [volume_weight, 0.0],
-            order: ConstraintOrder::default(),
+            ..Self::default()
         }
     }
 

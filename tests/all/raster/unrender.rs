@@ -22,17 +22,16 @@ struct Patient {
 
 impl Patient {
     fn scene(&self) -> Scene {
-        let ids: Vec<u32> = (0..self.triangles.len() as u32)
-            .filter(|&t| self.triangles[t as usize].is_some())
+        let ids: Vec<u32> = (0..)
+            .zip(&self.triangles)
+            .filter_map(|(t, c)| c.map(|_| t))
             .collect();
-        let triangles = ids
-            .iter()
-            .map(|&t| self.triangles[t as usize].expect("alive"))
-            .collect();
+        let triangles = self.triangles.iter().flatten().copied().collect();
         let colors = self
             .colors
-            .as_ref()
-            .map_or_else(Vec::new, |c| ids.iter().map(|&t| c[t as usize]).collect());
+            .iter()
+            .flat_map(|c| ids.iter().map(|&t| c[t as usize]));
+        let colors = colors.collect();
         Scene::new(self.positions.clone(), triangles, ids).with_colors(colors)
     }
 }
@@ -72,21 +71,11 @@ fn patient() -> impl Strategy<Value = Patient> {
         proptest::option::weighted(0.3, Just(())),
     )
         .prop_map(|(positions, triangles, colored)| {
-            let triangles: Vec<_> = triangles
-                .iter()
-                .map(|t| Some(t.map(|i| i.index(positions.len()) as u32)))
-                .collect();
-            let colors = colored.map(|()| {
-                (0..triangles.len() as u32)
-                    .map(|t| {
-                        std::array::from_fn(|k| {
-                            std::array::from_fn(|c| {
-                                f64::from((t * 7 + k as u32 * 3 + c as u32 * 5) % 11) / 10.0
-                            })
-                        })
-                    })
-                    .collect()
-            });
+            let corners = |t: &[prop::sample::Index; 3]| t.map(|i| i.index(positions.len()) as u32);
+            let triangles: Vec<_> = triangles.iter().map(corners).map(Some).collect();
+            let tone = |t: u32, k: u32, c: u32| f64::from((t * 7 + k * 3 + c * 5) % 11) / 10.0;
+            let color = |t| [0, 1, 2].map(|k| [0, 1, 2].map(|c| tone(t, k, c)));
+            let colors = colored.map(|()| (0..triangles.len() as u32).map(color).collect());
             Patient {
                 positions,
                 triangles,
@@ -105,45 +94,38 @@ fn step() -> impl Strategy<Value = Step> {
 }
 
 fn shading() -> impl Strategy<Value = Shading> {
-    let specular = prop_oneof![
-        Just(None),
-        Just(Some(Specular {
-            strength: 0.4,
-            exponent: 9
-        }))
-    ];
+    let shine = Specular {
+        strength: 0.4,
+        exponent: 9,
+    };
+    let specular = prop_oneof![Just(None), Just(Some(shine))];
     let interpolation = prop_oneof![Just(Interpolation::Flat), Just(Interpolation::Gouraud)];
-    (interpolation, any::<bool>(), specular).prop_map(|(interpolation, two_sided, specular)| {
-        Shading {
-            interpolation,
-            two_sided,
-            specular,
-        }
+    let fields = (interpolation, any::<bool>(), specular);
+    fields.prop_map(|(interpolation, two_sided, specular)| Shading {
+        interpolation,
+        two_sided,
+        specular,
     })
 }
 
+const SPHERE: Sphere = Sphere {
+    center: DVec3::ZERO,
+    radius: 0.7,
+};
+
 /// Perspective from outside and from inside the mesh (near-clipped), orthographic; all culls and lights.
 fn view() -> impl Strategy<Value = View> {
-    let sphere = Sphere {
-        center: DVec3::ZERO,
-        radius: 0.7,
-    };
     let place = (0..20_usize, 0..4_u8).prop_filter_map("a camera", move |(i, kind)| {
         let direction = DVec3::new(1.0, 0.3, -0.2) * (i as f64 - 9.5)
             + DVec3::new(-0.4, 1.0, 0.7 * (i % 3) as f64);
         let size = [32, 24];
         match kind {
-            0 | 1 => View::around(&sphere, direction, [i, 20], size, Projection::Perspective),
-            2 => View::around(&sphere, direction, [i, 20], size, Projection::Orthographic),
-            _ => View::perspective(
-                [
-                    DVec3::new(0.01, 0.02, 0.03),
-                    direction,
-                    DVec3::new(0.1, 0.9, -0.3),
-                ],
-                [0.05, 2.0],
-                size,
-            ),
+            0 | 1 => View::around(&SPHERE, direction, [i, 20], size, Projection::Perspective),
+            2 => View::around(&SPHERE, direction, [i, 20], size, Projection::Orthographic),
+            _ => {
+                let frame = [at(0.01, 0.02, 0.03), direction, at(0.1, 0.9, -0.3)];
+                View::perspective(frame, [0.05, 2.0], size)
+            }
         }
     });
     let cull = prop_oneof![Just(Cull::None), Just(Cull::Back), Just(Cull::Front)];
@@ -250,6 +232,31 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
     edit
 }
 
+/// Both engines with the pictures of a mesh.
+fn engines(mesh: &Patient, set: &ViewSet, reference: &[Grid<u16>]) -> [Box<dyn Unrender>; 2] {
+    let model = || Model::new(&mesh.scene(), set);
+    [
+        Box::new(BucketEngine::new(model(), set, reference)),
+        Box::new(LayerEngine::new(model(), set, reference)),
+    ]
+}
+
+fn sums(mesh: &Patient, set: &ViewSet) -> Vec<Grid<u16>> {
+    let scene = mesh.scene();
+    set.views
+        .iter()
+        .map(|v| raster::luma_sums(&scene, v, set))
+        .collect()
+}
+
+/// The squared differences of two pictures.
+fn squares(a: &Grid<u16>, b: &Grid<u16>) -> i64 {
+    let pairs = a.values().iter().zip(b.values());
+    pairs
+        .map(|(&a, &b)| (i64::from(a) - i64::from(b)).pow(2))
+        .sum()
+}
+
 /// The sum of the area normals of a closed fan does not depend on where its middle is: it moves, and its normal stays.
 #[test]
 fn a_vertex_that_moves_under_an_unchanged_normal_is_lit_anew() {
@@ -263,21 +270,12 @@ fn a_vertex_that_moves_under_an_unchanged_normal_is_lit_anew() {
     after.positions[3] = at(0.125, 0.0, 0.5);
     let normals = [&before, &after].map(|patient| patient.scene().normals()[3]);
     assert_eq!(normals[0], normals[1]);
-    let sphere = Sphere {
-        center: DVec3::ZERO,
-        radius: 0.7,
-    };
     let gouraud = Shading {
         interpolation: Interpolation::Gouraud,
         ..Shading::default()
     };
-    let view = View::around(
-        &sphere,
-        at(0.5, 0.25, 1.0),
-        [0, 1],
-        [32, 24],
-        Projection::Perspective,
-    );
+    let perspective = Projection::Perspective;
+    let view = View::around(&SPHERE, at(0.5, 0.25, 1.0), [0, 1], [32, 24], perspective);
     let set = ViewSet {
         width: 32,
         height: 24,
@@ -290,15 +288,10 @@ fn a_vertex_that_moves_under_an_unchanged_normal_is_lit_anew() {
         }],
     };
     let edit = difference(&before, &after, true);
-    let reference = [raster::luma_sums(&before.scene(), &set.views[0], &set)];
+    let reference = sums(&before, &set);
     let expected = raster::luma(&after.scene(), &set.views[0], &set).tones;
-    let model = || Model::new(&before.scene(), &set);
-    let engines: [Box<dyn Unrender>; 2] = [
-        Box::new(BucketEngine::new(model(), &set, &reference)),
-        Box::new(LayerEngine::new(model(), &set, &reference)),
-    ];
-    for mut engine in engines {
-        let mut scratch = engine.scratch();
+    for mut engine in engines(&before, &set, &reference) {
+        let mut scratch = engine.scratch(false);
         engine.commit(&edit, &mut scratch);
         assert_eq!(engine.luma(0), expected);
     }
@@ -314,37 +307,30 @@ proptest! {
         steps in proptest::collection::vec(step(), 1..12),
     ) {
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
-        let reference: Vec<Grid<u16>> =
-            set.views.iter().map(|v| raster::luma_sums(&start.scene(), v, &set)).collect();
-        let mut buckets = BucketEngine::new(Model::new(&start.scene(), &set), &set, &reference);
-        let mut layers = LayerEngine::new(Model::new(&start.scene(), &set), &set, &reference);
-        let mut scratches = (buckets.scratch(), layers.scratch());
+        let reference = sums(&start, &set);
+        let mut engines = engines(&start, &set, &reference);
+        let mut scratches = [engines[0].scratch(false), engines[1].scratch(false)];
         let mut now = start;
         let mut error = 0_i64;
         for step in &steps {
             let Some(after) = operate(&now, step) else { continue };
             let change = difference(&now, &after, gouraud);
-            let square = |y0: u16, y: u16| (i64::from(y0) - i64::from(y)).pow(2);
-            let costs = [
-                buckets.evaluate(&change, ViewSubset::All, &mut scratches.0),
-                layers.evaluate(&change, ViewSubset::All, &mut scratches.1),
-            ];
-            let committed = buckets.commit(&change, &mut scratches.0);
-            prop_assert_eq!(layers.commit(&change, &mut scratches.1), committed);
-            prop_assert_eq!(costs, [committed; 2]);
-            error += committed;
-            let mut scratch_error = 0;
+            let mut costs = Vec::new();
+            for (engine, scratch) in engines.iter_mut().zip(&mut scratches) {
+                costs.push(engine.evaluate(&change, ViewSubset::All, scratch));
+                costs.push(engine.commit(&change, scratch));
+            }
+            prop_assert_eq!(&costs, &vec![costs[0]; 4]);
+            error += costs[0];
             for (i, view) in set.views.iter().enumerate() {
                 let fresh = raster::luma(&after.scene(), view, &set);
-                prop_assert_eq!(&fresh.keys, &buckets.keys(i));
-                prop_assert_eq!(&fresh.keys, &layers.keys(i));
-                prop_assert_eq!(&fresh.tones, &buckets.luma(i));
-                prop_assert_eq!(&fresh.tones, &layers.luma(i));
-                let sums = raster::luma_sums(&after.scene(), view, &set);
-                scratch_error +=
-                    sums.values().iter().zip(reference[i].values()).map(|(&y, &y0)| square(y0, y)).sum::<i64>();
+                for engine in &engines {
+                    prop_assert_eq!(&fresh.keys, &engine.keys(i));
+                    prop_assert_eq!(&fresh.tones, &engine.luma(i));
+                }
             }
-            prop_assert_eq!(error, scratch_error);
+            let errors = sums(&after, &set);
+            prop_assert_eq!(error, errors.iter().zip(&reference).map(|(y, y0)| squares(y, y0)).sum::<i64>());
             now = after;
         }
     }
@@ -362,20 +348,12 @@ proptest! {
         let gouraud = set.views.iter().any(|v| v.shading.interpolation == Interpolation::Gouraud);
         let Some(after) = operate(&start, &step) else { return Ok(()) };
         let change = difference(&start, &after, gouraud);
-        let [before, sums] = [&start, &after].map(|patient| {
-            let sums = set.views.iter().map(|v| raster::luma_sums(&patient.scene(), v, &set));
-            sums.collect::<Vec<Grid<u16>>>()
-        });
         // The reference is the picture before: what a change costs is how far it leads away.
-        let costs: Vec<i64> = before.iter().zip(&sums).map(|(y0, y)| {
-            let pairs = y0.values().iter().zip(y.values());
-            pairs.map(|(&y0, &y)| (i64::from(y0) - i64::from(y)).pow(2)).sum()
-        }).collect();
+        let [before, sums] = [&start, &after].map(|patient| sums(patient, &set));
+        let costs: Vec<i64> = before.iter().zip(&sums).map(|(y0, y)| squares(y0, y)).collect();
         let some: i64 = costs.iter().step_by(every.max(1) as usize).sum();
-        let model = || Model::new(&start.scene(), &set);
-        let buckets = BucketEngine::new(model(), &set, &before);
-        let layers = LayerEngine::new(model(), &set, &before);
-        let mut scratches = (buckets.scratch(), layers.scratch(), layers.lone_scratch());
+        let [buckets, layers] = engines(&start, &set, &before);
+        let mut scratches = (buckets.scratch(false), layers.scratch(false), layers.scratch(true));
         // After a look at many pixels a lone one is shared among threads.
         for (views, expected) in [
             (ViewSubset::All, costs.iter().sum()),

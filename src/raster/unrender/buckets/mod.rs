@@ -36,20 +36,14 @@ impl BucketEngine {
         });
         Self { model, views }
     }
-
-    /// One buffer for every part of the views that has a thread of its own.
-    fn buffers(&self, parts: usize) -> UnrenderScratch {
-        UnrenderScratch::new(vec![PartScratch::new(self.model.corners.len()); parts])
-    }
 }
 
 impl Unrender for BucketEngine {
-    fn scratch(&self) -> UnrenderScratch {
-        self.buffers(1)
-    }
-
-    fn lone_scratch(&self) -> UnrenderScratch {
-        self.buffers(parallel::threads().min(PARTS).min(self.views.len()).max(1))
+    /// One buffer for every part of the views that has a thread of its own.
+    fn scratch(&self, alone: bool) -> UnrenderScratch {
+        let most = if alone { PARTS } else { 1 };
+        let parts = parallel::threads().min(most).min(self.views.len()).max(1);
+        UnrenderScratch::new(vec![PartScratch::new(self.model.corners.len()); parts])
     }
 
     fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    super::{Model, SceneEdit, difference, scene_edit::EditedFace},
+    super::scene_edit::{EditedFace, Model, SceneEdit, difference},
     lines::{Buckets, Stamps},
 };
 use crate::{
@@ -67,25 +67,13 @@ impl BucketView {
         let image = projector.image();
         let (width, height) = (image.x1 as u32, image.y1 as u32);
         let gouraud = view.shading.interpolation == Interpolation::Gouraud;
+        let positions = model.positions.iter();
         let mut pictures = Self {
             view: *view,
             shader,
-            screen: model
-                .positions
-                .iter()
-                .map(|&p| projector.screen(p))
-                .collect(),
+            screen: positions.map(|&p| projector.screen(p)).collect(),
             levels: Vec::new(),
-            intensities: if gouraud {
-                model
-                    .positions
-                    .iter()
-                    .zip(&model.normals)
-                    .map(|(&p, &n)| shader.intensity(p, n))
-                    .collect()
-            } else {
-                Vec::new()
-            },
+            intensities: Vec::new(),
             extents: vec![PixelRect::EMPTY; model.corners.len()],
             buckets: Buckets::new(width, height),
             keys: Grid::filled(width, height, SampleKey::BACKGROUND),
@@ -94,30 +82,28 @@ impl BucketView {
             background: set.background,
             projector,
         };
-        if !gouraud {
-            pictures.levels = model
-                .corners
-                .iter()
-                .map(|c| pictures.level(&FaceGeometry::new(c.map(|v| model.positions[v as usize]))))
-                .collect();
+        if gouraud {
+            let vertices = model.positions.iter().zip(&model.normals);
+            pictures.intensities = vertices.map(|(&p, &n)| shader.intensity(p, n)).collect();
+        } else {
+            let points = |c: &[u32; 3]| c.map(|v| model.positions[v as usize]);
+            let faces = model.corners.iter().map(|c| FaceGeometry::new(points(c)));
+            pictures.levels = faces.map(|face| pictures.level(&face)).collect();
         }
-        let (mut keys, mut luma) = (
-            pictures.keys.values().to_vec(),
-            pictures.luma.values().to_vec(),
-        );
+        let (mut keys, mut luma) = (pictures.keys.clone(), pictures.luma.clone());
         for id in 0..model.corners.len() as u32 {
             let mut extent = PixelRect::EMPTY;
             pictures
                 .face(model, id)
                 .pieces(&pictures.projector, view.cull, |setup, paint| {
                     extent = extent.union(setup.bounds());
-                    draw(setup, paint, id, [image; 2], &mut keys, &mut luma);
+                    let (keys, luma) = (keys.values_mut(), luma.values_mut());
+                    draw(setup, paint, id, [image; 2], keys, luma);
                 });
             pictures.extents[id as usize] = extent;
             pictures.buckets.insert(id, extent);
         }
-        pictures.keys.values_mut().copy_from_slice(&keys);
-        pictures.luma.values_mut().copy_from_slice(&luma);
+        (pictures.keys, pictures.luma) = (keys, luma);
         pictures
     }
 
@@ -329,10 +315,8 @@ impl BucketView {
             self.intensities[v as usize] = intensity;
         }
         let (width, stride) = (region.width(), self.luma.width() as usize);
-        let rows = scratch
-            .keys
-            .chunks_exact(width.max(1))
-            .zip(scratch.luma.chunks_exact(width.max(1)));
+        let keys = scratch.keys.chunks_exact(width.max(1));
+        let rows = keys.zip(scratch.luma.chunks_exact(width.max(1)));
         for (y, (keys, luma)) in rows.enumerate() {
             let start = (region.y0 as usize + y) * stride + region.x0 as usize;
             self.keys.values_mut()[start..start + width].copy_from_slice(keys);

@@ -46,7 +46,7 @@ pub struct LayerEngine {
 struct LayerScratch {
     parts: Vec<PartScratch>,
     /// Nothing else runs beside: parts may be given to other threads.
-    lone: bool,
+    alone: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -97,17 +97,18 @@ impl Part {
             indices,
         };
         for (v, &position) in model.positions.iter().enumerate() {
-            part.vertices
-                .project(v, position, part.views.iter().map(|view| &view.projector));
+            for (lane, view) in part.views.iter().enumerate() {
+                part.vertices.set(v, lane, view.projector.screen(position));
+            }
         }
         if part.views.iter().any(|view| view.gouraud) {
-            part.intensities = (0..model.positions.len() as u32)
-                .flat_map(|v| {
-                    part.views
-                        .iter()
-                        .map(move |view| view.vertex_intensity(model, v))
-                })
-                .collect();
+            let views = &part.views;
+            let at = |v| {
+                views
+                    .iter()
+                    .map(move |view| view.vertex_intensity(model, v))
+            };
+            part.intensities = (0..model.positions.len() as u32).flat_map(at).collect();
         }
         for (lane, view) in part.views.iter().enumerate() {
             for shown in view.lists.shown() {
@@ -266,22 +267,6 @@ impl LayerEngine {
         }
     }
 
-    fn buffers(&self, lone: bool) -> UnrenderScratch {
-        let part = |part: &Part| PartScratch {
-            screens: Screens {
-                moved: Projected::new(part.views.len(), 1, part.views.iter().any(|v| !v.plain)),
-                fresh: ScreenBoxes::default(),
-                all: ScreenBoxes::default(),
-                uncovers: 0,
-            },
-            delta: ViewDelta::default(),
-        };
-        UnrenderScratch::new(LayerScratch {
-            parts: self.parts.iter().map(part).collect(),
-            lone,
-        })
-    }
-
     fn view(&self, index: usize) -> &LayerView {
         let mut parts = self.parts.iter();
         let view = parts.find_map(|part| {
@@ -297,12 +282,20 @@ impl LayerEngine {
 }
 
 impl Unrender for LayerEngine {
-    fn scratch(&self) -> UnrenderScratch {
-        self.buffers(false)
-    }
-
-    fn lone_scratch(&self) -> UnrenderScratch {
-        self.buffers(true)
+    fn scratch(&self, alone: bool) -> UnrenderScratch {
+        let part = |part: &Part| PartScratch {
+            screens: Screens {
+                moved: Projected::new(part.views.len(), 1, part.views.iter().any(|v| !v.plain)),
+                fresh: ScreenBoxes::default(),
+                all: ScreenBoxes::default(),
+                uncovers: 0,
+            },
+            delta: ViewDelta::default(),
+        };
+        UnrenderScratch::new(LayerScratch {
+            parts: self.parts.iter().map(part).collect(),
+            alone,
+        })
     }
 
     fn evaluate(&self, edit: &SceneEdit, views: ViewSubset, scratch: &mut UnrenderScratch) -> i64 {
@@ -310,12 +303,14 @@ impl Unrender for LayerEngine {
         let model = &self.model;
         let work = |i: usize, scratch: &mut PartScratch| {
             let part = &self.parts[i];
-            let lanes = each(all(part.views.len()));
-            let lanes = lanes.filter(|lane| views.contains(part.indices[*lane]));
-            let lanes = lanes.fold(0, |bits, lane| bits | 1 << lane);
+            let chosen = part
+                .indices
+                .iter()
+                .map(|&view| u64::from(views.contains(view)));
+            let lanes = chosen.rev().fold(0, |bits, chosen| bits << 1 | chosen);
             part.evaluate(model, edit, lanes, scratch)
         };
-        if scratch.lone && self.parts.len() > 1 {
+        if scratch.alone && self.parts.len() > 1 {
             parallel::sum_mut(&mut scratch.parts, &work)
         } else {
             let parts = scratch.parts.iter_mut().enumerate();

@@ -6,7 +6,7 @@
 //! the first of a tile is nearer, or the upper half of what a pixel shows is. Only the others search the layers.
 
 use super::{
-    super::{difference, scene_edit::EditedFace},
+    super::scene_edit::{EditedFace, difference},
     projected::clipped_pixels,
     view::{LayerView, ProbeContext},
     view_delta::{Piece, ViewDelta},

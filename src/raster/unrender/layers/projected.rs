@@ -1,8 +1,6 @@
 //! Projected vertices: every vertex on the screens of several views at once, so that what a change needs of all views
 //! lies together. A lane is a view of these.
 
-use glam::DVec3;
-
 use crate::{
     num::fixed::SubpixelBits,
     raster::{Face, PixelRect, Projector, ScreenVertex, draw::projector::ScreenPoint},
@@ -25,11 +23,7 @@ impl Projected {
         Self {
             lanes,
             places: vec![0; vertices * 3 * lanes],
-            w_inverse: if shaded {
-                vec![0.0; vertices * lanes]
-            } else {
-                Vec::new()
-            },
+            w_inverse: vec![0.0; if shaded { vertices * lanes } else { 0 }],
         }
     }
 
@@ -57,19 +51,6 @@ impl Projected {
         self.places[start + 2 * self.lanes] = (at.depth ^ 1 << 31) as i32;
         if self.interpolates() {
             self.w_inverse[vertex * self.lanes + lane] = at.w_inverse;
-        }
-    }
-
-    /// Puts a vertex on all screens.
-    #[inline]
-    pub(super) fn project<'a>(
-        &mut self,
-        vertex: usize,
-        position: DVec3,
-        projectors: impl Iterator<Item = &'a Projector>,
-    ) {
-        for (lane, projector) in projectors.enumerate() {
-            self.set(vertex, lane, projector.screen(position));
         }
     }
 
@@ -104,10 +85,10 @@ impl Projected {
                 x,
                 y,
                 depth,
-                w_inverse: match self.w_inverse.get(vertex * self.lanes + lane) {
-                    Some(&w) => w,
-                    None => 0.0,
-                },
+                w_inverse: *self
+                    .w_inverse
+                    .get(vertex * self.lanes + lane)
+                    .unwrap_or(&0.0),
             },
         }
     }
@@ -185,12 +166,9 @@ impl ScreenBoxes {
         if x_min == i32::MAX {
             return Some(PixelRect::EMPTY);
         }
+        let columns = [x_min, self.x_max[lane]];
         let rows = [self.y_min[lane], self.y_max[lane]];
-        Some(PixelRect::with_centers_in(
-            [x_min, self.x_max[lane]],
-            rows,
-            bits,
-        ))
+        Some(PixelRect::with_centers_in(columns, rows, bits))
     }
 
     /// The least depth of the vertices in the box of a view.

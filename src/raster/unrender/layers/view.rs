@@ -1,7 +1,7 @@
 //! One view of the layers engine: its picture with all layers, and what triangles look like in it.
 
 use super::{
-    super::{Model, SceneEdit, scene_edit::EditedFace},
+    super::scene_edit::{EditedFace, Model, SceneEdit},
     Part, Screens,
     fragment_lists::{FragmentLists, HiZ, TILE},
 };

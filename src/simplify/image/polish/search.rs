@@ -54,7 +54,7 @@ impl Search {
         Self {
             star: Star::default(),
             patch: Patch::default(),
-            pictures: pictures.scratch(),
+            pictures: pictures.scratch(false),
         }
     }
 
