@@ -128,11 +128,8 @@ pub(crate) fn assert_consistent(live: &LiveMesh) {
             .edges_at(v)
             .map(|e| live.edge(e).expect("a listed edge is in use"));
         let edges: BTreeSet<[u32; 2]> = edges.collect();
-        assert_eq!(
-            edges.len(),
-            live.edges_at(v).count(),
-            "an edge twice at {v}"
-        );
+        let count = live.edges_at(v).count();
+        assert_eq!(edges.len(), count, "an edge twice at {v}");
         let expected: BTreeSet<[u32; 2]> =
             counts.keys().copied().filter(|e| e.contains(&v)).collect();
         assert_eq!(edges, expected, "edges at {v}");
@@ -407,10 +404,8 @@ fn no_edge_is_collapsed_at_a_rough_price_and_cheap_rough_prices_change_no_order(
         let exact = exact.to_mesh().expect("a mesh");
         let (cheap, counters) = run(-4..1, Schedule::Eager);
         assert_eq!(cheap, exact);
-        assert_eq!(
-            counters.ranks, expected.ranks,
-            "a rough price below the exact one is no reason to overlook an edge"
-        );
+        // A rough price below the exact one is no reason to overlook an edge.
+        assert_eq!(counters.ranks, expected.ranks);
         assert_eq!(counters.estimates, counters.evaluations_if_eager);
         assert!(counters.evaluations < counters.estimates / 2);
         // Any rough price will do for the rest, and any schedule.

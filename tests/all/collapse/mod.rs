@@ -2,6 +2,6 @@
 
 pub(crate) mod engine;
 mod high_valence;
-mod history;
+pub(crate) mod history;
 mod seams;
 mod tiles;

@@ -22,6 +22,7 @@ use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::{
+    collapse::history::{read_damaged, seek},
     simplify::{
         image::{error, meshes, reference, view_sets},
         options::SHADINGS,
@@ -186,11 +187,7 @@ proptest! {
         prop_assert_eq!(&history, &outcome.history);
         let mut walk = Replay::new(&mesh, &history).expect("the same mesh");
         for level in levels.into_iter().chain([last, 140, last]) {
-            walk.seek(level).expect("fits");
-            let mut fresh = Replay::new(&mesh, &history).expect("the same mesh");
-            fresh.seek(level).expect("fits");
-            prop_assert_eq!(walk.applied(), fresh.applied());
-            prop_assert_eq!(walk.live().to_mesh().expect("a mesh"), fresh.live().to_mesh().expect("a mesh"));
+            seek(&mut walk, &mesh, &history, level);
         }
         prop_assert_eq!(walk.applied(), history.len());
         if mesh.triangles().len() as u64 > triangles {
@@ -221,16 +218,7 @@ proptest! {
         }
         let sum = Sha256::digest(&damaged);
         damaged.extend(sum);
-        match History::from_bytes(&damaged, "run.lodh") {
-            Err(e) => prop_assert!(matches!(e.exit_code(), 3 | 4), "{e}"),
-            Ok(history) => {
-                if let Ok(mut replay) = Replay::new(&mesh, &history)
-                    && let Err(e) = replay.seek(0)
-                {
-                    prop_assert_eq!(e.exit_code(), 3, "{}", e);
-                }
-            }
-        }
+        read_damaged(&mesh, &damaged);
     }
 
     #[test]
