@@ -8,6 +8,7 @@
 
 mod attribute_rows;
 mod decimal;
+mod flip;
 mod format;
 mod gltf;
 mod obj;

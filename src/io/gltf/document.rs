@@ -145,7 +145,7 @@ pub(super) struct Mesh {
     pub primitives: Vec<Primitive>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 pub(super) struct Primitive {
     /// Accessors by name.
     pub attributes: BTreeMap<String, usize>,

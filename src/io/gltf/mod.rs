@@ -17,9 +17,11 @@ mod meshopt;
 mod parts;
 mod scene;
 mod surface;
+mod write;
 
 use std::{path::Path, sync::Arc};
 
+pub(in crate::rooms::io) use self::write::{encode, write};
 use self::{attributes::Channels, buffers::Views, document::Document};
 use crate::{
     Error, Result,

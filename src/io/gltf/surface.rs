@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// A primitive as part of the mesh: the vertices that its triangles use.
-#[expect(dead_code, reason = "a writer compares with what was read")]
+#[derive(Default)]
 pub(super) struct PartSurface {
     /// The number of every vertex among those that the primitive stores; increasing.
     pub source: Vec<u32>,
@@ -37,7 +37,6 @@ pub(super) struct PartSurface {
 ///
 /// # Errors
 /// [`Error::Input`] where accessors do not hold what the primitive needs; [`Error::Unsupported`] for Draco compression.
-#[expect(dead_code, reason = "a writer compares with what was read")]
 pub(super) fn part_corners(
     document: &Document,
     views: &Views<'_>,
