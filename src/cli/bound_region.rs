@@ -22,11 +22,11 @@ use crate::{
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = file_help::paragraphs(&["\
 A .svg shows the region in a plane through the first point: that of point and cell for a segment or a line, one that \
-holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl) is the region's surface. \
+holds the way to the cell for others, or the one across --normal. A mesh (.obj, .ply, .stl, .glb, .gltf) is the region's surface. \
 Where the region has no end it is cut off at --reach. The cell is drawn in red, of one without an end what is in the \
 picture.", &file_help::cells()]))]
 pub(super) struct BoundRegionArgs {
-    /// Figure (.svg) or mesh (.obj, .ply, .stl)
+    /// Figure (.svg) or mesh (.obj, .ply, .stl, .glb, .gltf)
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Where viewers may be: a JSON cell file

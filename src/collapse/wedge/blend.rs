@@ -17,7 +17,7 @@ pub(in crate::rooms::collapse) struct Blend<'a, const N: usize> {
 
 impl<const N: usize> Blend<'_, N> {
     /// Writes the mean into `into`, rounded to the precision: within the range of the values; unit for normals and
-    /// tangents, or `otherwise` where they cancel; of skins the four heaviest joints with weights that sum to 1; of
+    /// tangents, or `otherwise` where they cancel; of skins the four heaviest joints with the weight of all; of
     /// custom attributes and the signs of tangents the value that weighs most.
     pub(in crate::rooms::collapse) fn write(
         &self,
@@ -69,7 +69,8 @@ impl<const N: usize> Blend<'_, N> {
         self.values[(1..N).fold(0, better)]
     }
 
-    /// Adds the weights of equal joints and keeps the four heaviest, of equal ones those with the least number.
+    /// Adds the weights of equal joints and keeps the four heaviest, of equal ones those with the least number; they take
+    /// over what the others weigh (a set of several does not sum to 1).
     fn skin(&self, into: &mut [f64]) {
         let mut joints: Vec<(f64, f64)> = Vec::with_capacity(4 * N);
         for (values, weight) in self.values.iter().zip(self.weights) {
@@ -83,11 +84,13 @@ impl<const N: usize> Blend<'_, N> {
             }
         }
         joints.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+        let sum_of = |joints: &[(f64, f64)]| joints.iter().map(|j| j.1).sum::<f64>();
+        let all = sum_of(&joints);
         joints.truncate(4);
-        let sum: f64 = joints.iter().map(|j| j.1).sum();
+        let sum = sum_of(&joints);
         into.fill(0.0);
         for (k, (joint, share)) in joints.into_iter().enumerate() {
-            (into[k], into[k + 4]) = (joint, share / sum);
+            (into[k], into[k + 4]) = (joint, share / sum * all);
         }
     }
 }

@@ -187,15 +187,8 @@ fn a_file_that_is_not_there_ends_with_5_and_its_name() {
 #[test]
 fn what_is_planned_but_not_built_ends_with_4() {
     let dir = folder();
-    put(&dir, "in.ply", &generate::icosphere(1));
-    let gltf = ["simplify", "in.ply", "out.glb", "--ratio", "0.5"];
-    for words in [&["lod", "a", "b"][..], &gltf] {
-        let said = expect(&dir, 4, words);
-        assert!(
-            said.contains("not built yet") || said.contains("yet;"),
-            "{said}"
-        );
-    }
+    let said = expect(&dir, 4, &["lod", "a", "b"]);
+    assert!(said.contains("not built yet"), "{said}");
 }
 
 #[test]

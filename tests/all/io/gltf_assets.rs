@@ -7,7 +7,7 @@ use std::{
 
 use lodmark::{
     Options, Target, io,
-    mesh::{Mesh, canonical, weld},
+    mesh::{Mesh, canonical, content_digest, weld},
     simplify,
 };
 use serde_json::Value;
@@ -82,8 +82,11 @@ fn files_that_did_not_change_give_everything_back() {
         let out = folder.path().join("same.glb");
         io::write(&out, &canonical(&weld(mesh.clone()).mesh).mesh).expect("written");
         let again = io::read(&out).expect("read").mesh;
-        assert_eq!(again.triangles(), mesh.triangles(), "{}", path.display());
-        assert_eq!(again.attributes(), mesh.attributes(), "{}", path.display());
+        assert!(
+            content_digest(&again) == content_digest(&mesh),
+            "{}",
+            path.display()
+        );
         let packed = [
             "images",
             "bufferViews",
@@ -98,7 +101,7 @@ fn files_that_did_not_change_give_everything_back() {
         }
         let before = images(&mesh);
         if !before.is_empty() {
-            assert_eq!(images(&again), before, "{}", path.display());
+            assert!(images(&again) == before, "{}", path.display());
         }
     }
 }

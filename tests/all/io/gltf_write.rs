@@ -189,6 +189,13 @@ fn a_primitive_that_changed_is_appended_and_nothing_else_moves() {
         let was = &section(old, "meshes")[0]["primitives"][1]["attributes"][name];
         let (was, is) = (accessor(old, was), accessor(new, index));
         // The triangle that is left has vertices 0, 2 and 3: their values, bit for bit.
+        if name == "TEXCOORD_1" {
+            assert_eq!(
+                is.elements[0],
+                [0.250_003_81_f32, 0.500_007_63].map(f64::from)
+            );
+            continue;
+        }
         let kept: Vec<f64> = [0, 2, 3]
             .iter()
             .flat_map(|&v| was.elements[v].clone())
@@ -358,23 +365,15 @@ fn a_strip_that_changed_becomes_a_list() {
 
 #[test]
 fn attributes_that_no_channel_carries_are_dropped_with_a_word() {
-    let bytes = squares(json!({}));
-    let text = String::from_utf8_lossy(&bytes).replace("\"_ID\"", "\"WHAT\"");
-    let start = 20
-        + bytes
-            .windows(4)
-            .skip(20)
-            .position(|w| w == b"BIN\0")
-            .expect("a chunk")
-        - 4;
-    let json: Value = serde_json::from_str(
-        text[20..]
-            .split("BIN")
-            .next()
-            .map_or("", |t| t.rfind('}').map_or("", |end| &t[..=end])),
-    )
-    .expect("a document");
-    let mesh = read(&glb(&json.to_string(), &bytes[start + 8..]));
+    let known = read(&squares(json!({})));
+    let sections = asset(&known).sections.iter();
+    let sections: Vec<String> = sections
+        .map(|(name, text)| format!("\"{name}\":{}", text.replace("\"_ID\"", "\"WHAT\"")))
+        .collect();
+    let mesh = read(&glb(
+        &format!("{{{}}}", sections.join(",")),
+        &asset(&known).buffers[0],
+    ));
     let (written, notes) = write(&without_first(&mesh));
     assert!(notes.iter().any(|n| n.contains("WHAT")), "{notes:?}");
     let again = read(&written);

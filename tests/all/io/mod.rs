@@ -2,9 +2,9 @@
 
 mod files;
 mod gltf;
-mod gltf_hostile;
 mod gltf_assets;
 mod gltf_documents;
+mod gltf_hostile;
 mod gltf_write;
 mod hostile;
 mod mesh_methods;
