@@ -383,6 +383,32 @@ fn attributes_that_no_channel_carries_are_dropped_with_a_word() {
 }
 
 #[test]
+fn views_that_nobody_reads_may_be_wrong_and_stay_so() {
+    let known = read(&squares(json!({})));
+    let broken = r#"{"buffer":0,"byteOffset":99999999,"byteLength":5}"#;
+    let sections = asset(&known)
+        .sections
+        .iter()
+        .map(|(name, text)| match name.as_str() {
+            "bufferViews" => format!("\"{name}\":{},{broken}]", &text[..text.len() - 1]),
+            _ => format!("\"{name}\":{text}"),
+        });
+    let sections: Vec<String> = sections.collect();
+    let mesh = read(&glb(
+        &format!("{{{}}}", sections.join(",")),
+        &asset(&known).buffers[0],
+    ));
+    for changed in [mesh.clone(), without_first(&mesh)] {
+        let again = read(&write(&changed).0);
+        assert!(
+            text_of(asset(&again), "bufferViews")
+                .expect("views")
+                .contains(broken)
+        );
+    }
+}
+
+#[test]
 fn meshes_of_other_formats_get_a_document_of_their_own() {
     let folder = folder();
     let torus = canonical(&generate::textured_torus(12, 6)).mesh;

@@ -10,6 +10,7 @@ mod files;
 mod fresh;
 mod images;
 mod json;
+mod left;
 mod pack;
 mod primitive;
 mod prune;

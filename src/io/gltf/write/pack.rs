@@ -38,7 +38,10 @@ pub(super) fn pack(
             entry.set("buffer", "0");
             entry.set("byteLength", "4");
         } else {
-            let bytes = views.bytes(index)?;
+            let Ok(bytes) = views.bytes(index) else {
+                // Nobody who reads the mesh needs it: what is wrong with it stays.
+                continue;
+            };
             let start = if view.extensions.meshopt.is_some() {
                 append(&mut packed, &bytes[..view.byte_length])
             } else {
@@ -108,7 +111,10 @@ fn pieces(
             } else if view.buffer == buffer {
                 // As far from a multiple of 4 as before.
                 let start = view.byte_offset / 4 * 4;
-                needed.push(start..view.byte_offset.saturating_add(view.byte_length));
+                let end = view.byte_offset.saturating_add(view.byte_length);
+                if end <= bytes.len() {
+                    needed.push(start..end);
+                }
             }
         }
         if whole {

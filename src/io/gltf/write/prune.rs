@@ -37,18 +37,25 @@ pub(super) fn prune(
             }
             sections.set("accessors", json::array(&entries));
             let needed = references::gather(sections, VIEWS)?;
+            let texts = json::entries(sections.get("bufferViews").unwrap_or("[]"))?;
             for view in views_of(document, &dead) {
                 let users = users(document, view, &dead);
-                if !needed.contains(&view) && users.iter().all(|&a| is_plain(document, a)) {
-                    for accessor in users {
-                        let moved = copy(sections, document, views, view, accessor)?;
-                        let mut entry = Members::parse(&entries[accessor])?;
-                        entry.set("bufferView", additions.view(moved).to_string());
-                        entry.remove(&["byteOffset"]);
-                        entries[accessor] = entry.to_string();
-                    }
-                    dropped.insert(view);
+                if needed.contains(&view) || !users.iter().all(|&a| is_plain(document, a)) {
+                    continue;
                 }
+                let old = Members::parse(&texts[view])?;
+                let moved = users.iter().map(|&a| copy(&old, document, views, a));
+                let moved: Result<Vec<NewView>> = moved.collect();
+                let Some(moved) = moved.ok().filter(|m| saves(document, view, m)) else {
+                    continue;
+                };
+                for (accessor, bytes) in users.into_iter().zip(moved) {
+                    let mut entry = Members::parse(&entries[accessor])?;
+                    entry.set("bufferView", additions.view(bytes).to_string());
+                    entry.remove(&["byteOffset"]);
+                    entries[accessor] = entry.to_string();
+                }
+                dropped.insert(view);
             }
         }
     }
@@ -91,17 +98,15 @@ fn is_plain(document: &Document, accessor: usize) -> bool {
     document.accessors[accessor].sparse.is_none()
 }
 
-/// The bytes of an accessor alone, in a view as the one that it has.
-fn copy(
-    sections: &Members,
-    document: &Document,
-    views: &Views<'_>,
-    view: usize,
-    accessor: usize,
-) -> Result<NewView> {
+/// Whether bytes apart are fewer than the view: accessors may share them.
+fn saves(document: &Document, view: usize, moved: &[NewView]) -> bool {
+    let apart: usize = moved.iter().map(|m| m.bytes.len()).sum();
+    apart <= document.views[view].byte_length
+}
+
+/// The bytes of an accessor alone, in a view as the `old` one.
+fn copy(old: &Members, document: &Document, views: &Views<'_>, accessor: usize) -> Result<NewView> {
     let elements = Elements::open(document, views, accessor)?;
-    let old = json::entries(sections.get("bufferViews").unwrap_or("[]"))?;
-    let old = Members::parse(&old[view])?;
     let (size, strided) = (elements.size(), old.get("byteStride").is_some());
     let stride = if strided {
         size.next_multiple_of(4)
