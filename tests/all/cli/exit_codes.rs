@@ -125,7 +125,11 @@ fn a_damaged_file_is_named_with_the_place_of_the_damage() {
         ("huge.stl", huge_stl, "4294967295"),
         ("empty.obj", Vec::new(), "empty"),
         ("points.obj", b"v 0 0 0\nv 1 0 0\n".to_vec(), "no triangles"),
-        ("noise.bin", vec![0xff; 64], "expected an OBJ, PLY or STL"),
+        (
+            "noise.bin",
+            vec![0xff; 64],
+            "expected an OBJ, PLY, STL or glTF",
+        ),
     ] {
         fs::write(dir.path().join(name), content).expect("writes");
         let said = expect(&dir, 3, &["simplify", name, "out.ply", "-t", "1"]);
