@@ -32,26 +32,29 @@ pub fn face_interval(
     direction: DVec3,
     aperture: Aperture,
 ) -> FaceInterval {
-    match *cell.shape() {
-        Shape::HalfSpace { point, normal } => FaceInterval {
-            offsets: above_plane(point, normal, corners, direction, aperture),
-            exact: true,
-        },
-        Shape::Plane { point, normal } => FaceInterval {
-            // What is below a plane sees it as what is above its other side does.
-            offsets: beside_plane(point, normal, corners, direction, aperture),
-            exact: true,
-        },
-        _ => FaceInterval {
-            offsets: conservative_interval(
-                cell.distance_to_triangle(*corners),
-                corners,
-                direction,
-                aperture,
-            ),
-            exact: false,
-        },
-    }
+    let (Shape::HalfSpace { point, normal } | Shape::Plane { point, normal }) = *cell.shape()
+    else {
+        let distance = cell.distance_to_triangle(*corners);
+        let offsets = conservative_interval(distance, corners, direction, aperture);
+        let exact = false;
+        return FaceInterval { offsets, exact };
+    };
+    // What is below a plane sees it as what is above its other side does.
+    let two_sided = matches!(cell.shape(), Shape::Plane { .. });
+    let rates = [normal, -normal].each(|up| rates(up, direction, aperture));
+    let limit = |p: DVec3, height: f64| {
+        let [down, up] = rates[usize::from(two_sided && height < 0.0)];
+        let way = if two_sided {
+            height.abs()
+        } else {
+            height.max(0.0)
+        };
+        let rho = p.dot(direction);
+        Interval::new(rho - down * way, rho + up * way)
+    };
+    let offsets = on_either_side(point, normal, corners, limit);
+    let exact = true;
+    FaceInterval { offsets, exact }
 }
 
 /// The offsets that move no point of a face by more than `distance sin(aperture)`, where no viewer is closer to the
@@ -64,11 +67,7 @@ pub fn conservative_interval(
 ) -> Interval {
     let reach = distance * aperture.sin();
     corners.iter().fold(Interval::ALL, |all, p| {
-        let rho = p.dot(direction);
-        all.and(Interval {
-            min: rho - reach,
-            max: rho + reach,
-        })
+        all.and(Interval::around(p.dot(direction), reach))
     })
 }
 
@@ -81,50 +80,6 @@ fn rates(normal: DVec3, direction: DVec3, aperture: Aperture) -> [f64; 2] {
         let limits = tangents(turned, aperture).into_iter().flatten();
         limits.fold(f64::INFINITY, |least, t| least.min(t.length))
     })
-}
-
-/// For viewers on the side of the plane that `normal` points away from.
-fn above_plane(
-    point: DVec3,
-    normal: DVec3,
-    corners: &[DVec3; 3],
-    direction: DVec3,
-    aperture: Aperture,
-) -> Interval {
-    let [against, along] = rates(normal, direction, aperture);
-    let limit = |p: DVec3, height: f64| {
-        let (rho, height) = (p.dot(direction), height.max(0.0));
-        Interval {
-            min: rho - against * height,
-            max: rho + along * height,
-        }
-    };
-    on_either_side(point, normal, corners, limit)
-}
-
-/// For viewers on the plane.
-fn beside_plane(
-    point: DVec3,
-    normal: DVec3,
-    corners: &[DVec3; 3],
-    direction: DVec3,
-    aperture: Aperture,
-) -> Interval {
-    let [[against, along], [against_below, along_below]] =
-        [normal, -normal].each(|n| rates(n, direction, aperture));
-    let limit = |p: DVec3, height: f64| {
-        let rho = p.dot(direction);
-        let (down, up) = if height < 0.0 {
-            (against_below, along_below)
-        } else {
-            (against, along)
-        };
-        Interval {
-            min: rho - down * height.abs(),
-            max: rho + up * height.abs(),
-        }
-    };
-    on_either_side(point, normal, corners, limit)
 }
 
 /// The points of a face at which a limit that is linear on each side of a plane can be least: corners and crossings.

@@ -94,11 +94,8 @@ impl Projection {
         aperture: Aperture,
     ) -> Result<Self> {
         // To and fro along a direction is the same projection.
-        let toward = if direction.dot(normal) < 0.0 {
-            -direction
-        } else {
-            direction
-        };
+        let against = direction.dot(normal) < 0.0;
+        let toward = if against { -direction } else { direction };
         let scale = toward.dot(normal);
         let skew = normal.perp_dot(toward) / scale;
         if !(scale > 0.0 && skew.is_finite()) {
@@ -150,23 +147,18 @@ impl Projection {
     pub fn interval(&self, a: DVec2, b: DVec2) -> Interval {
         let (m, n) = (self.cell.enter(a), self.cell.enter(b));
         let (from, to) = (self.turned(m), self.turned(n));
-        let face = Face {
-            from,
-            to,
-            offsets: [self.own(from), self.own(to)],
-        };
+        let offsets = [from, to].each(|p| self.own(p));
+        let face = Face { from, to, offsets };
         let local = if self.sin == 0.0 {
             self.interval_without_tolerance(&face)
         } else {
             let mut bounds = Bounds(Interval::ALL);
             self.narrow_by_ends(&face, &mut bounds);
-            self.narrow_by_tangents(&face, m.y, n.y, [m.x, n.x], &mut bounds);
+            self.narrow_by_tangents(&face, [m, n], &mut bounds);
             bounds.0
         };
-        Interval {
-            min: local.min * self.scale + self.offset,
-            max: local.max * self.scale + self.offset,
-        }
+        let place = |rho: f64| rho * self.scale + self.offset;
+        Interval::new(place(local.min), place(local.max))
     }
 
     /// False only where [`Projection::interval`] of every face with the point `p` holds no offset in `offsets`: judged
@@ -259,10 +251,7 @@ impl Projection {
             return bounds.0;
         }
         let [from, to] = face.offsets;
-        Interval {
-            min: from.max(to),
-            max: from.min(to),
-        }
+        Interval::new(from.max(to), from.min(to))
     }
 
     /// Narrows `bounds` to those that the ends of the cell allow (equations 11 to 13, appendix C).
@@ -325,38 +314,26 @@ impl Projection {
     /// Narrows bounds to those that viewpoints between the ends allow: where a circle touches the line of the cell the
     /// limit is linear along the face (equation 10), so that the ends of that part of the face are enough.
     #[inline(always)]
-    fn narrow_by_tangents(
-        &self,
-        face: &Face,
-        from_height: f64,
-        to_height: f64,
-        abscissae: [f64; 2],
-        bounds: &mut Bounds,
-    ) {
+    fn narrow_by_tangents(&self, face: &Face, [from, to]: [DVec2; 2], bounds: &mut Bounds) {
         // Split where the face crosses the axis (appendix B).
-        let rise = to_height - from_height;
-        let crossing = if (from_height < 0.0) == (to_height < 0.0) {
-            None
+        let rise = to.y - from.y;
+        let below = from.y < 0.0;
+        let parts = if below == (to.y < 0.0) {
+            [Some((0.0, 1.0, below)), None]
         } else {
-            Some((from_height / (from_height - to_height)).clamp(0.0, 1.0))
-        };
-        let below = from_height < 0.0;
-        let parts = match crossing {
-            None => [Some((0.0, 1.0, below)), None],
-            Some(at) => [Some((0.0, at, below)), Some((at, 1.0, !below))],
+            let at = (from.y / (from.y - to.y)).clamp(0.0, 1.0);
+            [Some((0.0, at, below)), Some((at, 1.0, !below))]
         };
         let [first, last] = self.cell.ends();
         let run = face.offsets[1] - face.offsets[0];
         for (low, high, below) in parts.into_iter().flatten() {
             let side = if below { -1.0 } else { 1.0 };
             for (direction, sign) in [(0, 1.0), (1, -1.0)] {
-                for tangent in self.tangents[usize::from(below)][direction] {
-                    let Some(Tangent { offset, length }) = tangent else {
-                        continue;
-                    };
+                let tangents = self.tangents[usize::from(below)][direction];
+                for Tangent { offset, length } in tangents.into_iter().flatten() {
                     // The viewpoint of the point at parameter t is at start + t slope.
-                    let start = abscissae[0] + side * offset * from_height;
-                    let slope = abscissae[1] - abscissae[0] + side * offset * rise;
+                    let start = from.x + side * offset * from.y;
+                    let slope = to.x - from.x + side * offset * rise;
                     let (at_low, at_high) = (start + low * slope, start + high * slope);
                     if at_low.max(at_high) < first || at_low.min(at_high) > last {
                         continue;
@@ -371,7 +348,7 @@ impl Projection {
                         }
                     };
                     for t in [part(low, at_low), part(high, at_high)] {
-                        let height = (from_height + t * rise) * side;
+                        let height = (from.y + t * rise) * side;
                         let limit = face.offsets[0] + t * run + sign * length * height.max(0.0);
                         if sign > 0.0 {
                             bounds.0.max = bounds.0.max.min(limit);

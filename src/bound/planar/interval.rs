@@ -15,24 +15,31 @@ pub struct Interval {
 
 impl Interval {
     /// Every offset.
-    pub const ALL: Self = Self {
-        min: f64::NEG_INFINITY,
-        max: f64::INFINITY,
-    };
+    pub const ALL: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
 
     /// No offset.
-    pub const NONE: Self = Self {
-        min: f64::INFINITY,
-        max: f64::NEG_INFINITY,
-    };
+    pub const NONE: Self = Self::new(f64::INFINITY, f64::NEG_INFINITY);
+
+    /// The offsets from `min` to `max`.
+    #[inline(always)]
+    pub const fn new(min: f64, max: f64) -> Self {
+        Self { min, max }
+    }
+
+    /// One offset.
+    pub fn at(rho: f64) -> Self {
+        Self::new(rho, rho)
+    }
+
+    /// The offsets at most `reach` away from `rho`.
+    pub fn around(rho: f64, reach: f64) -> Self {
+        Self::new(rho - reach, rho + reach)
+    }
 
     /// The offsets that are in both.
     #[inline]
     pub fn and(self, other: Self) -> Self {
-        Self {
-            min: self.min.max(other.min),
-            max: self.max.min(other.max),
-        }
+        Self::new(self.min.max(other.min), self.max.min(other.max))
     }
 
     /// True where no offset is in it.
@@ -74,6 +81,6 @@ impl Bounds {
 
     /// Narrows the interval to the line through a point of the face that lies at a viewpoint.
     pub(super) fn pin(&mut self, rho: f64) {
-        self.0 = self.0.and(Interval { min: rho, max: rho });
+        self.0 = self.0.and(Interval::at(rho));
     }
 }

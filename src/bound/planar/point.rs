@@ -26,13 +26,8 @@ pub struct Extent {
 pub(super) fn reach(sight: DVec2, direction: DVec2, sin: f64, cos: f64) -> f64 {
     let across = (sight.x * direction.y - sight.y * direction.x).abs();
     let along = sight.x * direction.x + sight.y * direction.y;
-    reach_of(
-        sight.x * sight.x + sight.y * sight.y,
-        across,
-        along,
-        sin,
-        cos,
-    )
+    let squared = sight.x * sight.x + sight.y * sight.y;
+    reach_of(squared, across, along, sin, cos)
 }
 
 /// [`reach`] of a sight by its squared length and its parts across (not negative) and along the direction.
@@ -103,21 +98,16 @@ pub(super) fn extent_in_frame(
     cos: f64,
 ) -> (f64, f64) {
     let height = point.y.abs();
-    let up = if point.y < 0.0 {
-        -direction.y
-    } else {
-        direction.y
-    };
-    let direction = DVec2::new(direction.x, up);
+    let up = direction.y;
+    let direction = DVec2::new(direction.x, if point.y < 0.0 { -up } else { up });
     let mut best = (f64::INFINITY, f64::NAN);
+    // Without a branch, so that many points go at a time.
+    let either = |better: bool, one: f64, other: f64| if better { one } else { other };
     for x in ends {
         // An end at infinity gives NaN, which is not smaller.
         let length = reach(DVec2::new(point.x - x, height), direction, sin, cos);
         let better = length < best.0;
-        best = (
-            if better { length } else { best.0 },
-            if better { x } else { best.1 },
-        );
+        best = (either(better, length, best.0), either(better, x, best.1));
     }
     for sign in [1.0, -1.0] {
         let (offset, _) = tangent(direction, sign, sin, cos);
@@ -126,10 +116,7 @@ pub(super) fn extent_in_frame(
         let length = reach(DVec2::new(-shift, height), direction, sin, cos);
         // The comparisons with the ends refuse a tangent at infinity.
         let better = (x >= ends[0]) & (x <= ends[1]) & (length < best.0);
-        best = (
-            if better { length } else { best.0 },
-            if better { x } else { best.1 },
-        );
+        best = (either(better, length, best.0), either(better, x, best.1));
     }
     best
 }
@@ -142,13 +129,9 @@ pub fn segment_extent(
     direction: DVec2,
     aperture: Aperture,
 ) -> Extent {
-    let (length, x) = extent_in_frame(
-        cell.ends(),
-        cell.enter(point),
-        cell.turn(direction),
-        aperture.sin(),
-        aperture.cos(),
-    );
+    let (point, direction) = (cell.enter(point), cell.turn(direction));
+    let (sin, cos) = (aperture.sin(), aperture.cos());
+    let (length, x) = extent_in_frame(cell.ends(), point, direction, sin, cos);
     Extent {
         length,
         viewpoint: x.is_finite().then(|| cell.viewpoint(x)),

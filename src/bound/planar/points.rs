@@ -33,13 +33,7 @@ pub fn segment_extents(
     viewpoints: &mut [f64],
 ) -> Result<()> {
     let count = rays.x.len();
-    let columns = [
-        rays.y.len(),
-        rays.dx.len(),
-        rays.dy.len(),
-        lengths.len(),
-        viewpoints.len(),
-    ];
+    let columns = [rays.y, rays.dx, rays.dy, lengths, viewpoints].map(|column| column.len());
     if columns.iter().any(|&n| n != count) {
         return Err(Error::Usage(format!(
             "columns of {count} points must all have {count} entries, not {columns:?}"
@@ -50,13 +44,9 @@ pub fn segment_extents(
     let directions = rays.dx.iter().zip(rays.dy);
     let out = lengths.iter_mut().zip(viewpoints);
     for (((&x, &y), (&dx, &dy)), (length, viewpoint)) in points.zip(directions).zip(out) {
-        (*length, *viewpoint) = extent_in_frame(
-            ends,
-            cell.enter(DVec2::new(x, y)),
-            cell.turn(DVec2::new(dx, dy)),
-            sin,
-            cos,
-        );
+        let (point, direction) = (DVec2::new(x, y), DVec2::new(dx, dy));
+        let (point, direction) = (cell.enter(point), cell.turn(direction));
+        (*length, *viewpoint) = extent_in_frame(ends, point, direction, sin, cos);
     }
     Ok(())
 }

@@ -23,20 +23,18 @@ pub struct WidestAngle {
 /// cell it is pi: viewers beside the contact see up to that.
 pub fn segment_error(cell: &ViewerSegment, point: DVec2, replacement: DVec2) -> WidestAngle {
     let (m, s) = (cell.enter(point), cell.enter(replacement));
-    let mut worst = WidestAngle {
-        angle: 0.0,
-        viewpoint: None,
+    let at = |angle: f64, x: Option<f64>| {
+        let viewpoint = x.map(|x| cell.viewpoint(x));
+        WidestAngle { angle, viewpoint }
     };
     if m == s {
-        return worst;
+        return at(0.0, None);
     }
     let [first, last] = cell.ends();
     if let Some(x) = contact(m, s, first, last) {
-        return WidestAngle {
-            angle: std::f64::consts::PI,
-            viewpoint: Some(cell.viewpoint(x)),
-        };
+        return at(std::f64::consts::PI, Some(x));
     }
+    let mut worst = (0.0, None);
     let stationary = stationary(m, s).into_iter().flatten();
     for x in [first, last].into_iter().chain(stationary) {
         if !x.is_finite() || x < first || x > last {
@@ -44,14 +42,11 @@ pub fn segment_error(cell: &ViewerSegment, point: DVec2, replacement: DVec2) -> 
         }
         let (a, b) = (m - DVec2::new(x, 0.0), s - DVec2::new(x, 0.0));
         let angle = math::atan2(a.perp_dot(b).abs(), a.dot(b));
-        if angle > worst.angle {
-            worst = WidestAngle {
-                angle,
-                viewpoint: Some(cell.viewpoint(x)),
-            };
+        if angle > worst.0 {
+            worst = (angle, Some(x));
         }
     }
-    worst
+    at(worst.0, worst.1)
 }
 
 /// An abscissa of the cell on the segment from `m` to `s`.

@@ -30,15 +30,9 @@ pub(super) fn heights(
             let axis = up.place(glam::DVec2::ZERO, 1.0);
             let bound = face_interval(cell, &corners, axis, aperture).offsets;
             // Its own height is always valid, whatever rounding says.
-            Interval {
-                min: bound.min.min(height),
-                max: bound.max.max(height),
-            }
+            Interval::new(bound.min.min(height), bound.max.max(height))
         }
-        Limit::Distance(distance) => Interval {
-            min: height - distance,
-            max: height + distance,
-        },
+        Limit::Distance(distance) => Interval::around(height, distance),
     }
 }
 

@@ -86,15 +86,9 @@ impl PlanFace {
                         }
                     }
                 }
-                Limits::Distance {
-                    direction,
-                    distance,
-                } => {
+                Limits::Distance(direction, distance) => {
                     for rho in [a.dot(*direction), b.dot(*direction)] {
-                        all = all.and(Interval {
-                            min: rho - distance,
-                            max: rho + distance,
-                        });
+                        all = all.and(Interval::around(rho, *distance));
                     }
                 }
             }
@@ -104,8 +98,7 @@ impl PlanFace {
 
     /// True where the face may be projected on the plane at `rho`.
     pub(super) fn fits(&self, limits: &Limits, rho: f64) -> bool {
-        self.may_reach(limits, Interval { min: rho, max: rho })
-            && self.interval(limits).contains(rho)
+        self.may_reach(limits, Interval::at(rho)) && self.interval(limits).contains(rho)
     }
 
     /// False only where the face may be projected on no plane at one of `offsets`.
@@ -127,8 +120,8 @@ pub(super) enum Limits {
     Viewers(Vec<Projection>),
     /// Nothing reaches planes along the direction of projection.
     Parallel,
-    /// A distance.
-    Distance { direction: DVec2, distance: f64 },
+    /// A distance along a direction.
+    Distance(DVec2, f64),
 }
 
 /// The faces of a mesh in plan; triangles that meet the cell are listed apart.

@@ -193,19 +193,12 @@ impl Selection<'_> {
         // Whatever a turn about the centre can reach.
         let reach = 3.0 * step.whole + SLANT_REACH * step.slant;
         let limits = self.limits(bearing);
-        let offsets = Interval {
-            min: stab.rho,
-            max: stab.rho,
-        };
         let is_near = |&face: &u32| {
             if self.values[face as usize] == 0 {
                 return false;
             }
             let slack = reach * middle(face).distance(centre);
-            let wanted = Interval {
-                min: stab.rho - 2.0 * slack,
-                max: stab.rho + 2.0 * slack,
-            };
+            let wanted = Interval::around(stab.rho, 2.0 * slack);
             let face = &self.faces[face as usize];
             face.may_reach(&limits, wanted) && {
                 let interval = face.interval(&limits);
@@ -216,7 +209,7 @@ impl Selection<'_> {
             slope: 2.0 * reach,
             centre,
         };
-        let near = self.tree.near(&limits, offsets, growth);
+        let near = self.tree.near(&limits, stab.rho, growth);
         let near = parallel::filter_map(near.len(), |i| Some(near[i]).filter(is_near));
         let mut best = (stab, bearing);
         for _ in 0..HALVINGS {

@@ -150,10 +150,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let limits = Limits::Distance {
-                direction: DVec2::X,
-                distance: 1.0 + at(3),
-            };
+            let limits = Limits::Distance(DVec2::X, 1.0 + at(3));
             let values: Vec<u64> = (0..count).map(|_| at(4) as u64).collect();
             let sum_at = |rho: f64, value: &dyn Fn(usize) -> u64| {
                 let there = (0..faces.len()).filter(|&i| faces[i].interval(&limits).contains(rho));

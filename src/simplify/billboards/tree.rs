@@ -13,9 +13,8 @@ const LEAF: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    /// A disc that holds the first points of its faces.
-    centre: DVec2,
-    radius: f64,
+    /// Holds the first points of its faces.
+    disc: Disc,
     /// Largest distance of the middle of a face from its first point.
     half: f64,
     /// First face of a leaf, or the second child; the first child is the next node.
@@ -43,15 +42,12 @@ pub(super) struct Growth {
 impl PlanTree {
     /// Sorts faces into a tree. O(n log n).
     pub(super) fn new(faces: &[PlanFace]) -> Self {
-        let mut own = Self {
-            nodes: Vec::new(),
-            order: (0..faces.len() as u32).collect(),
-        };
+        let mut order: Vec<u32> = (0..faces.len() as u32).collect();
+        let mut own = Self::default();
         if !faces.is_empty() {
-            let mut order = std::mem::take(&mut own.order);
             own.grow(faces, &mut order, 0);
-            own.order = order;
         }
+        own.order = order;
         own
     }
 
@@ -71,8 +67,7 @@ impl PlanTree {
         }
         let at = self.nodes.len();
         self.nodes.push(Node {
-            centre,
-            radius,
+            disc: Disc { centre, radius },
             half,
             link: first as u32,
             faces: order.len() as u32,
@@ -93,26 +88,18 @@ impl PlanTree {
         self.grow(faces, right, first + middle);
     }
 
-    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets, which grow
-    /// for a face by `growth`, at either end.
-    pub(super) fn near(&self, limits: &Limits, offsets: Interval, growth: Growth) -> Vec<u32> {
+    /// The faces, ascending, but for some of those that may be projected on no plane at one of the offsets around `rho`,
+    /// which grow for a face by `growth`, at either end.
+    pub(super) fn near(&self, limits: &Limits, rho: f64, growth: Growth) -> Vec<u32> {
         let mut found = Vec::new();
         let mut open = vec![0_u32];
         while let Some(at) = open.pop() {
             let Some(node) = self.nodes.get(at as usize) else {
                 break;
             };
-            let away = node.centre.distance(growth.centre) + node.radius + node.half;
+            let away = node.disc.centre.distance(growth.centre) + node.disc.radius + node.half;
             let more = growth.slope * away;
-            let wanted = Interval {
-                min: offsets.min - more,
-                max: offsets.max + more,
-            };
-            let disc = Disc {
-                centre: node.centre,
-                radius: node.radius,
-            };
-            if !limits.may_reach_any(disc, wanted) {
+            if !limits.may_reach_any(node.disc, Interval::around(rho, more)) {
                 continue;
             }
             let first = node.link as usize;
@@ -128,7 +115,7 @@ impl PlanTree {
 
     /// As [`PlanTree::near`] for a single offset.
     pub(super) fn at(&self, limits: &Limits, rho: f64) -> Vec<u32> {
-        self.near(limits, Interval { min: rho, max: rho }, Growth::default())
+        self.near(limits, rho, Growth::default())
     }
 }
 
@@ -138,10 +125,7 @@ impl Limits {
         match self {
             Self::Parallel => false,
             Self::Viewers(sides) => sides.iter().all(|side| side.may_reach_any(disc, offsets)),
-            Self::Distance {
-                direction,
-                distance,
-            } => {
+            Self::Distance(direction, distance) => {
                 let (rho, radius) = (disc.centre.dot(*direction), disc.radius);
                 // Far above rounding.
                 let reach = (distance + radius) * (1.0 + 1e-9) + rho.abs() * 1e-12;
@@ -191,28 +175,17 @@ mod tests {
             let project =
                 |cell| Projection::oblique(&cell, along, normal, aperture).expect("not parallel");
             let limits = match case % 5 {
-                0..4 => Limits::Viewers(
-                    cells
-                        .into_iter()
-                        .take(1 + case % 3)
-                        .flatten()
-                        .map(project)
-                        .collect(),
-                ),
-                _ => Limits::Distance {
-                    direction: normal,
-                    distance: degrees,
-                },
+                0..4 => {
+                    let some = cells.into_iter().take(1 + case % 3);
+                    Limits::Viewers(some.flatten().map(project).collect())
+                }
+                _ => Limits::Distance(normal, degrees),
             };
             let rho = between(-9.0, 9.0);
             let tree = PlanTree::new(&faces);
             let found = tree.at(&limits, rho);
             let slope = between(0.0, 0.1);
-            let wide = tree.near(
-                &limits,
-                Interval { min: rho, max: rho },
-                Growth { slope, centre },
-            );
+            let wide = tree.near(&limits, rho, Growth { slope, centre });
             for (i, face) in (0_u32..).zip(&faces) {
                 if face.fits(&limits, rho) {
                     assert!(found.contains(&i), "case {case}, face {i}");

@@ -136,10 +136,7 @@ impl PlanCell {
                 let sides: Result<Vec<Projection>> = self.sides.iter().map(new).collect();
                 sides.map_or(Limits::Parallel, Limits::Viewers)
             }
-            Limit::Distance(distance) => Limits::Distance {
-                direction: normal,
-                distance,
-            },
+            Limit::Distance(distance) => Limits::Distance(normal, distance),
         }
     }
 }

@@ -1,10 +1,37 @@
 //! Distances and orientation by brute force: what judges the crate uses none of its code for them.
 
 use glam::DVec3;
-use lodmark::mesh::Mesh;
+use lodmark::{bound::planar::Aperture, mesh::Mesh};
 
 pub(crate) fn at(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
+}
+
+/// An angle between 0 and a right one.
+pub(crate) fn aperture(radians: f64) -> Aperture {
+    Aperture::radians(radians).expect("below a right angle")
+}
+
+/// The angle between two points seen from `v`, by its own formula: twice the angle whose tangent is a ratio of lengths
+/// (Kahan).
+pub(crate) fn angle_between(v: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = ((a - v).normalize(), (b - v).normalize());
+    2.0 * libm::atan2((a - b).length(), (a + b).length())
+}
+
+/// The mean of points by weights of any sum.
+pub(crate) fn mixture(points: &[DVec3], weights: &[f64]) -> DVec3 {
+    let sum: f64 = weights.iter().sum();
+    let all = points.iter().zip(weights);
+    all.map(|(&p, &w)| p * (w / sum)).sum()
+}
+
+/// A mesh of triangles whose corners are all among the positions.
+pub(crate) fn mesh_of(
+    positions: impl Into<Vec<DVec3>>,
+    triangles: impl Into<Vec<[u32; 3]>>,
+) -> Mesh {
+    Mesh::from_triangles(positions.into(), triangles.into()).expect("valid")
 }
 
 /// The corners of every triangle.
@@ -17,7 +44,7 @@ pub(crate) fn faces(mesh: &Mesh) -> Vec<[DVec3; 3]> {
 pub(crate) fn moved(mesh: &Mesh, vertex: usize, by: DVec3) -> Mesh {
     let mut positions = mesh.positions().to_vec();
     positions[vertex] += by;
-    Mesh::from_triangles(positions, mesh.triangles().to_vec()).expect("valid")
+    mesh_of(positions, mesh.triangles())
 }
 
 /// The distance from a point to a triangle: the least over its face and sides, all of them.

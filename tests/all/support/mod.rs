@@ -11,6 +11,7 @@ mod progress;
 mod property;
 mod random;
 mod sources;
+mod tables;
 mod threads;
 
 pub(crate) use command::{
@@ -18,7 +19,8 @@ pub(crate) use command::{
 };
 pub(crate) use folds::faults;
 pub(crate) use geometry::{
-    at, distance, distance_by_descent, distance_to_all, faces, lattice, moved,
+    angle_between, aperture, at, distance, distance_by_descent, distance_to_all, faces, lattice,
+    mesh_of, mixture, moved,
 };
 pub(crate) use gltf::GltfBuilder;
 pub(crate) use meshes::{framed, live, scene_of, snapshot};
@@ -27,4 +29,5 @@ pub(crate) use oracle::say;
 pub(crate) use progress::{Impatient, Recorder, StopsAfter};
 pub(crate) use property::{bound_cases, bound_count, bound_seed, bounded, cases};
 pub(crate) use random::Random;
+pub(crate) use tables::rows;
 pub(crate) use threads::{collapse, on_threads, same_on_all_threads};

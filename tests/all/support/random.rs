@@ -29,6 +29,11 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
+    /// 1 or -1.
+    pub(crate) fn sign(&mut self) -> f64 {
+        [1.0, -1.0][self.below(2)]
+    }
+
     pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }

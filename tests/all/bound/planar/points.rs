@@ -6,6 +6,7 @@ use lodmark::bound::planar::{
 };
 
 use super::seen::{angle, cases, largest};
+use crate::support::aperture;
 
 struct Case {
     cell: [DVec2; 2],
@@ -55,18 +56,14 @@ fn draw(stream: u64) -> impl Iterator<Item = Case> {
 fn no_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
     let (mut limited, mut inner, mut unbounded) = (0, 0, 0);
     for (i, case) in draw(1).enumerate() {
-        let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
+        let (theta, aperture) = (case.theta, aperture(case.theta));
         let extent = segment_extent(&case.cell(), case.point, case.direction, aperture);
-        let theta = case.theta;
         if extent.length == f64::INFINITY {
             unbounded += 1;
             assert!(extent.viewpoint.is_none(), "case {i}");
             for length in [1e-3, 1.0, 30.0, 1e4, 1e7] {
-                let seen = case.sampled(length, 160);
-                assert!(
-                    seen <= theta * (1.0 + 1e-9) + 1e-12,
-                    "case {i}: {seen} at {length}"
-                );
+                let more = case.sampled(length, 160) - theta * (1.0 + 1e-9);
+                assert!(more <= 1e-12, "case {i}: {more} more at {length}");
             }
             continue;
         }
@@ -75,24 +72,17 @@ fn no_viewpoint_of_a_segment_sees_more_than_the_extent_claims() {
         let ends = case.cell.iter().any(|&e| e.distance(viewpoint) < 1e-9);
         inner += usize::from(!ends);
         let moved = case.point + case.direction * extent.length;
-        let from_there = angle(viewpoint, case.point, moved);
-        assert!(
-            (from_there - theta).abs() < 1e-6 * theta,
-            "case {i}: {from_there} and not {theta}"
-        );
+        let there = angle(viewpoint, case.point, moved);
+        let off = (there - theta).abs();
+        assert!(off < 1e-6 * theta, "case {i}: {there} and not {theta}");
         let seen = case.sampled(extent.length, 160);
         assert!(seen <= theta * (1.0 + 1e-8), "case {i}: {seen} > {theta}");
         let beyond = |samples| case.sampled(extent.length * (1.0 + 1e-4), samples);
         let found = [160, 2000, 100_000].into_iter().any(|n| beyond(n) > theta);
-        assert!(
-            found,
-            "case {i}: nobody sees more than {theta} beyond the claim"
-        );
+        assert!(found, "case {i}: nobody sees {theta} beyond the claim");
     }
-    assert!(
-        limited > inner && inner > limited / 20 && unbounded > limited / 50,
-        "{limited} {inner} {unbounded}"
-    );
+    let many = limited > inner && inner > limited / 20 && unbounded > limited / 50;
+    assert!(many, "{limited} {inner} {unbounded}");
 }
 
 #[test]
@@ -101,10 +91,10 @@ fn no_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
         if case.cell[0] == case.cell[1] {
             continue;
         }
-        let aperture = Aperture::radians(case.theta).expect("drawn below a right angle");
+        let theta = case.theta;
         let along = case.cell[1] - case.cell[0];
         let line = ViewerSegment::line(case.cell[0], along).expect("two points");
-        let extent = segment_extent(&line, case.point, case.direction, aperture);
+        let extent = segment_extent(&line, case.point, case.direction, aperture(theta));
         // Viewpoints of the whole line, as the tangent of an angle about the foot of the point.
         let unit = along / along.length();
         let foot = case.cell[0] + unit * (case.point - case.cell[0]).dot(unit);
@@ -118,13 +108,9 @@ fn no_viewpoint_of_a_line_sees_more_than_the_extent_claims() {
             largest(seen, 400).0
         };
         let seen = sampled(extent.length);
-        assert!(
-            seen <= case.theta * (1.0 + 1e-6),
-            "case {i}: {seen} > {}",
-            case.theta
-        );
+        assert!(seen <= theta * (1.0 + 1e-6), "case {i}: {seen} > {theta}");
         let beyond = sampled(extent.length * (1.0 + 1e-4));
-        assert!(beyond > case.theta, "case {i}: {beyond} <= {}", case.theta);
+        assert!(beyond > theta, "case {i}: {beyond} <= {theta}");
     }
 }
 
@@ -134,48 +120,31 @@ fn the_worst_viewpoint_of_a_moved_point_is_found() {
     for (i, case) in draw(3).enumerate() {
         let moved = case.point + case.direction * (case.theta * 20.0);
         let worst = segment_error(&case.cell(), case.point, moved);
-        let sampled = largest(|s| angle(case.viewpoint(s), case.point, moved), 400).0;
-        if worst.angle == std::f64::consts::PI {
+        let viewpoint = worst.viewpoint.expect("an angle is seen from somewhere");
+        let (most, seen) = (worst.angle, |v| angle(v, case.point, moved));
+        let sampled = largest(|s| seen(case.viewpoint(s)), 400).0;
+        if most == std::f64::consts::PI {
             touching += 1;
-            let viewpoint = worst.viewpoint.expect("a contact");
             let away = viewpoint.distance(case.point) + viewpoint.distance(moved);
             assert!((away - case.point.distance(moved)).abs() < 1e-9, "case {i}");
             continue;
         }
-        assert!(
-            sampled <= worst.angle + 1e-9,
-            "case {i}: {sampled} > {}",
-            worst.angle
-        );
-        assert!(
-            worst.angle <= sampled * (1.0 + 1e-4),
-            "case {i}: {} > {sampled}",
-            worst.angle
-        );
-        let viewpoint = worst.viewpoint.expect("an angle is seen from somewhere");
-        let there = angle(viewpoint, case.point, moved);
-        assert!((there - worst.angle).abs() < 1e-9, "case {i}");
+        assert!(sampled <= most + 1e-9, "case {i}: {sampled} > {most}");
+        assert!(most <= sampled * (1.0 + 1e-4), "{i}: {most} > {sampled}");
+        assert!((seen(viewpoint) - most).abs() < 1e-9, "case {i}");
     }
-    assert!(
-        touching > 5,
-        "only {touching} replaced points touch their cell"
-    );
+    assert!(touching > 5, "only {touching} points touch their cell");
 }
 
 #[test]
 fn a_column_of_extents_has_the_bits_of_one_by_one() {
     let all: Vec<Case> = draw(4).collect();
     let cell = all[0].cell();
-    let aperture = Aperture::radians(0.02).expect("small");
+    let aperture = aperture(0.02);
     let column = |f: fn(&Case) -> f64| all.iter().map(f).collect::<Vec<f64>>();
-    let (x, y) = (column(|c| c.point.x), column(|c| c.point.y));
-    let (dx, dy) = (column(|c| c.direction.x), column(|c| c.direction.y));
-    let rays = Rays {
-        x: &x,
-        y: &y,
-        dx: &dx,
-        dy: &dy,
-    };
+    let (x, y) = (&column(|c| c.point.x), &column(|c| c.point.y));
+    let (dx, dy) = (&column(|c| c.direction.x), &column(|c| c.direction.y));
+    let rays = Rays { x, y, dx, dy };
     let (mut lengths, mut viewpoints) = (vec![0.0; all.len()], vec![0.0; all.len()]);
     segment_extents(&cell, rays, aperture, &mut lengths, &mut viewpoints).expect("equal columns");
     for (i, case) in all.iter().enumerate() {
@@ -192,7 +161,7 @@ fn a_column_of_extents_has_the_bits_of_one_by_one() {
 
 #[test]
 fn a_point_at_a_viewpoint_may_not_move() {
-    let aperture = Aperture::degrees(10.0).expect("below 90");
+    let aperture = aperture(0.17);
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
     for x in [-1.0, -0.3, 0.0, 1.0] {
         for gamma in [0.0, 0.4, 1.57, 3.0, 4.0] {
@@ -202,60 +171,38 @@ fn a_point_at_a_viewpoint_may_not_move() {
             assert_eq!(extent.viewpoint, Some(DVec2::new(x, 0.0)));
         }
     }
-    assert_eq!(
-        viewpoint_extent(DVec2::ONE, DVec2::ONE, DVec2::X, aperture),
-        0.0
-    );
+    let here = viewpoint_extent(DVec2::ONE, DVec2::ONE, DVec2::X, aperture);
+    assert_eq!(here, 0.0);
 }
 
 #[test]
 fn a_point_on_the_line_beside_its_segment_is_not_taken_for_one_in_it() {
-    let theta = 0.1;
-    let aperture = Aperture::radians(theta).expect("small");
+    let theta = 0.1_f64;
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
-    let extent = segment_extent(&cell, DVec2::new(4.0, 0.0), DVec2::Y, aperture);
-    assert!(
-        (extent.length - 3.0 * theta.tan()).abs() < 1e-12,
-        "{extent:?}"
-    );
-    assert_eq!(extent.viewpoint, Some(DVec2::X));
-    let away = segment_extent(&cell, DVec2::new(4.0, 0.0), DVec2::X, aperture);
-    assert_eq!(away.length, f64::INFINITY);
-    let toward = segment_extent(&cell, DVec2::new(4.0, 0.0), -DVec2::X, aperture);
-    assert_eq!(toward.length, 3.0);
+    let extent = |d| segment_extent(&cell, DVec2::new(4.0, 0.0), d, aperture(theta));
+    let across = extent(DVec2::Y);
+    let off = (across.length - 3.0 * theta.tan()).abs();
+    assert!(off < 1e-12, "{across:?}");
+    assert_eq!(across.viewpoint, Some(DVec2::X));
+    assert_eq!(extent(DVec2::X).length, f64::INFINITY);
+    assert_eq!(extent(-DVec2::X).length, 3.0);
 }
 
 #[test]
 fn without_tolerance_no_point_may_move_across_the_sight() {
-    let none = Aperture::radians(0.0).expect("zero is an angle");
-    let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
-    let line = ViewerSegment::on_x_axis(f64::NEG_INFINITY, f64::INFINITY);
-    for d in [
-        DVec2::Y,
-        DVec2::X,
-        -DVec2::Y,
-        -DVec2::X,
-        DVec2::from_angle(0.3),
-    ] {
-        for cell in [cell, line] {
-            let extent = segment_extent(&cell, DVec2::new(0.2, 3.0), d, none);
-            assert_eq!(extent.length, 0.0, "{d}");
+    let length = |first: f64, last: f64, point: DVec2, d: DVec2| {
+        let cell = ViewerSegment::on_x_axis(first, last);
+        segment_extent(&cell, point, d, aperture(0.0)).length
+    };
+    let (x, y, tilted) = (DVec2::X, DVec2::Y, DVec2::from_angle(0.3));
+    for d in [y, x, -y, -x, tilted] {
+        for end in [1.0, f64::INFINITY] {
+            assert_eq!(length(-end, end, DVec2::new(0.2, 3.0), d), 0.0, "{d}");
         }
     }
-    let viewpoint = ViewerSegment::on_x_axis(2.0, 2.0);
-    let point = DVec2::new(2.0, 3.0);
-    assert_eq!(
-        segment_extent(&viewpoint, point, DVec2::Y, none).length,
-        f64::INFINITY
-    );
-    assert_eq!(
-        segment_extent(&viewpoint, point, -DVec2::Y, none).length,
-        3.0
-    );
-    assert_eq!(
-        segment_extent(&viewpoint, point, DVec2::X, none).length,
-        0.0
-    );
+    for (d, expected) in [(y, f64::INFINITY), (-y, 3.0), (x, 0.0)] {
+        assert_eq!(length(2.0, 2.0, DVec2::new(2.0, 3.0), d), expected);
+    }
 }
 
 #[test]
@@ -268,17 +215,9 @@ fn an_angle_that_bounds_nothing_is_refused() {
     assert!(Aperture::radians(std::f64::consts::FRAC_PI_2).is_err());
     let wide = Aperture::degrees(89.9999).expect("below 90");
     let cell = ViewerSegment::on_x_axis(-1.0, 1.0);
-    let extent = segment_extent(&cell, DVec2::new(0.0, 1.0), DVec2::X, wide);
-    let seen = largest(
-        |s| {
-            angle(
-                DVec2::new(2.0 * s - 1.0, 0.0),
-                DVec2::new(0.0, 1.0),
-                DVec2::new(extent.length, 1.0),
-            )
-        },
-        400,
-    );
+    let extent = segment_extent(&cell, DVec2::Y, DVec2::X, wide);
+    let moved = DVec2::new(extent.length, 1.0);
+    let seen = largest(|s| angle(DVec2::X * (2.0 * s - 1.0), DVec2::Y, moved), 400);
     assert!((seen.0 - wide.angle()).abs() < 1e-9, "{seen:?} {extent:?}");
 }
 

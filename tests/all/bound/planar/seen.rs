@@ -44,19 +44,9 @@ pub(super) fn largest_of_two(
     starts: usize,
 ) -> (f64, [f64; 2]) {
     let (rows, columns) = (steps[0] as usize + 1, steps[1] as usize + 1);
-    let at = |i: usize, n: usize| {
-        if n == 1 {
-            0.0
-        } else {
-            i as f64 / (n - 1) as f64
-        }
-    };
-    let mut grid = Vec::with_capacity(rows * columns);
-    for i in 0..rows {
-        for j in 0..columns {
-            grid.push(f(at(i, rows), at(j, columns)));
-        }
-    }
+    let at = |i: usize, n: usize| i as f64 / (n - 1).max(1) as f64;
+    let places = (0..rows * columns).map(|k| (at(k / columns, rows), at(k % columns, columns)));
+    let grid: Vec<f64> = places.map(|(s, t)| f(s, t)).collect();
     let mut peaks = Vec::new();
     for i in 0..rows {
         for j in 0..columns {
@@ -75,13 +65,10 @@ pub(super) fn largest_of_two(
         let mut here = peak;
         let mut half = [1.0 / steps[0].max(1) as f64, 1.0 / steps[1].max(1) as f64];
         for _ in 0..40 {
-            let before = here.0;
-            let centre = here.1;
-            for i in -2..=2 {
+            let (before, centre) = here;
+            let across = if steps[0] == 0 { 0 } else { 2 };
+            for i in -across..=across {
                 for j in -2..=2 {
-                    if steps[0] == 0 && i != 0 {
-                        continue;
-                    }
                     let s = (centre[0] + half[0] * f64::from(i) / 2.0).clamp(0.0, 1.0);
                     let t = (centre[1] + half[1] * f64::from(j) / 2.0).clamp(0.0, 1.0);
                     let value = f(s, t);

@@ -8,6 +8,7 @@ use lodmark::bound::{
 };
 
 use super::seen::{cases, largest_of_two};
+use crate::support::{aperture, at};
 
 fn angle(v: DVec3, a: DVec3, b: DVec3) -> f64 {
     let (a, b) = (a - v, b - v);
@@ -18,10 +19,8 @@ fn angle(v: DVec3, a: DVec3, b: DVec3) -> f64 {
 fn seen(point: DVec3, normal: DVec3, a: DVec3, b: DVec3) -> f64 {
     let height = (a - point).dot(normal);
     let foot = a - normal * height;
-    let [e, f] = [
-        normal.any_orthonormal_vector(),
-        normal.cross(normal.any_orthonormal_vector()),
-    ];
+    let e = normal.any_orthonormal_vector();
+    let f = normal.cross(e);
     let from = |s: f64, t: f64| {
         let along = |t: f64| ((t - 0.5) * std::f64::consts::PI * 0.99999).tan() * height;
         foot + e * along(s) + f * along(t)
@@ -41,41 +40,30 @@ fn no_viewer_below_a_face_sees_more_than_its_interval_claims() {
         });
         let d = random.direction();
         let theta = random.between(0.003, 0.8);
-        let aperture = Aperture::radians(theta).expect("below a right angle");
         let cell = ViewCell::half_space(point, normal).expect("a unit normal");
-        let found = face_interval(&cell, &corners, d, aperture);
+        let found = face_interval(&cell, &corners, d, aperture(theta));
         assert!(found.exact);
-        let mut inside = corners.to_vec();
+        let (mut inside, [a, b, c]) = (corners.to_vec(), corners);
         for _ in 0..3 {
             let (s, t) = (random.unit(), random.unit());
-            inside.push(
-                corners[0]
-                    + ((corners[1] - corners[0]) * s + (corners[2] - corners[0]) * (1.0 - s)) * t,
-            );
+            inside.push(a + ((b - a) * s + (c - a) * (1.0 - s)) * t);
         }
         for (rho, sign) in [(found.offsets.max, 1.0), (found.offsets.min, -1.0)] {
             let worst = |rho: f64| {
                 let seen = inside.iter().map(|&p| {
                     let way = rho - p.dot(d);
-                    if way * sign <= 0.0 {
-                        0.0
-                    } else {
-                        seen(point, normal, p, p + d * way)
-                    }
+                    let seen = || seen(point, normal, p, p + d * way);
+                    if way * sign <= 0.0 { 0.0 } else { seen() }
                 });
                 seen.fold(0.0, f64::max)
             };
             let at = worst(rho);
             assert!(at <= theta * (1.0 + 1e-6), "case {number}: {at} > {theta}");
-            let step = corners
-                .iter()
-                .map(|p| (rho - p.dot(d)).abs())
-                .fold(0.0, f64::max);
+            let ways = corners.map(|p| (rho - p.dot(d)).abs());
+            let step = ways.into_iter().fold(0.0, f64::max);
             let beyond = worst(rho + sign * (step * 1e-3 + 1e-6));
-            assert!(
-                beyond > theta * (1.0 - 1e-6),
-                "case {number}: {beyond} <= {theta} beyond the claim"
-            );
+            let least = theta * (1.0 - 1e-6);
+            assert!(beyond > least, "case {number}: {beyond} <= {theta} beyond");
         }
     }
 }
@@ -89,90 +77,58 @@ fn a_conservative_interval_holds_no_offset_that_someone_sees() {
         let corners = [(); 3].map(|()| away + random.vector(2.0));
         let d = random.direction();
         let theta = random.between(0.003, 0.8);
-        let aperture = Aperture::radians(theta).expect("below a right angle");
         let cell = ViewCell::segment(ends).expect("two points");
-        let found = face_interval(&cell, &corners, d, aperture);
+        let found = face_interval(&cell, &corners, d, aperture(theta));
         assert!(!found.exact);
         let distance = cell.distance_to_triangle(corners);
-        assert_eq!(
-            found.offsets,
-            conservative_interval(distance, &corners, d, aperture)
-        );
+        let expected = conservative_interval(distance, &corners, d, aperture(theta));
+        assert_eq!(found.offsets, expected);
         for rho in [found.offsets.min, found.offsets.max] {
             if found.offsets.is_empty() {
                 continue;
             }
-            let worst = largest_of_two(
-                |s, t| {
-                    let v = ends[0] + (ends[1] - ends[0]) * s;
-                    // Along two edges and across.
-                    let p = corners[0] + (corners[1] - corners[0]) * t;
-                    let q = corners[2] + (p - corners[2]) * s;
-                    let moved = |p: DVec3| p + d * (rho - p.dot(d));
-                    angle(v, p, moved(p)).max(angle(v, q, moved(q)))
-                },
-                [16, 16],
-                3,
-            );
-            assert!(
-                worst.0 <= theta * (1.0 + 1e-9),
-                "case {number}: {worst:?} > {theta}"
-            );
+            let seen = |s: f64, t: f64| {
+                let v = ends[0] + (ends[1] - ends[0]) * s;
+                // Along two edges and across.
+                let p = corners[0] + (corners[1] - corners[0]) * t;
+                let q = corners[2] + (p - corners[2]) * s;
+                let moved = |p: DVec3| p + d * (rho - p.dot(d));
+                angle(v, p, moved(p)).max(angle(v, q, moved(q)))
+            };
+            let (worst, _) = largest_of_two(seen, [16, 16], 3);
+            assert!(worst <= theta * (1.0 + 1e-9), "{number}: {worst} > {theta}");
         }
     }
 }
 
 #[test]
 fn a_face_that_reaches_into_its_cell_stays_in_its_plane() {
-    let aperture = Aperture::degrees(1.0).expect("below 90");
-    let cell = ViewCell::half_space(DVec3::ZERO, DVec3::Z).expect("a normal");
-    let corners = [
-        DVec3::new(0.0, 0.0, -1.0),
-        DVec3::new(0.0, 0.0, 2.0),
-        DVec3::new(3.0, 0.0, 2.0),
-    ];
-    // Along y the face lies in its own plane only.
-    let own = face_interval(&cell, &corners, DVec3::Y, aperture).offsets;
-    assert_eq!(own, Interval { min: 0.0, max: 0.0 });
-    // Along x its part in the cell has more than one offset.
-    assert!(
-        face_interval(&cell, &corners, DVec3::X, aperture)
-            .offsets
-            .is_empty()
-    );
+    let corners = [at(0.0, 0.0, -1.0), at(0.0, 0.0, 2.0), at(3.0, 0.0, 2.0)];
+    let half_space = ViewCell::half_space(DVec3::ZERO, DVec3::Z).expect("a normal");
     let plane = ViewCell::plane(DVec3::ZERO, DVec3::Z).expect("a normal");
-    let crossing = face_interval(&plane, &corners, DVec3::Y, aperture);
-    assert_eq!(crossing.offsets, Interval { min: 0.0, max: 0.0 });
-    assert!(crossing.exact);
-    // A box around a corner of the face leaves nothing but its plane.
     let near = ViewCell::cuboid(DVec3::splat(-2.0), DVec3::splat(0.5)).expect("a box");
-    let touched = face_interval(&near, &corners, DVec3::Y, aperture);
-    assert_eq!(
-        (touched.offsets, touched.exact),
-        (Interval { min: 0.0, max: 0.0 }, false)
-    );
+    // Along y the face lies in its own plane only, and a box around a corner leaves nothing but that plane.
+    for (cell, exact) in [(&half_space, true), (&plane, true), (&near, false)] {
+        let found = face_interval(cell, &corners, DVec3::Y, aperture(0.02));
+        assert_eq!((found.offsets, found.exact), (Interval::at(0.0), exact));
+    }
+    // Along x its part in the cell has more than one offset.
+    let found = face_interval(&half_space, &corners, DVec3::X, aperture(0.02));
+    assert!(found.offsets.is_empty());
 }
 
 #[test]
 fn a_plane_of_viewers_sees_to_both_sides() {
     let aperture = Aperture::degrees(5.0).expect("below 90");
     let plane = ViewCell::plane(DVec3::ZERO, DVec3::Z).expect("a normal");
-    let above = [
-        DVec3::new(0.0, 0.0, 2.0),
-        DVec3::new(1.0, 0.0, 3.0),
-        DVec3::new(0.0, 2.0, 4.0),
-    ];
+    let above = [at(0.0, 0.0, 2.0), at(1.0, 0.0, 3.0), at(0.0, 2.0, 4.0)];
     let below = above.map(|p| DVec3::new(p.x, p.y, -p.z));
     let d = DVec2::from_angle(0.7);
     let (up, down) = (DVec3::new(d.x, 0.0, d.y), DVec3::new(d.x, 0.0, -d.y));
     let space = ViewCell::half_space(DVec3::ZERO, DVec3::Z).expect("a normal");
     let expected = face_interval(&space, &above, up, aperture).offsets;
-    assert_eq!(
-        face_interval(&plane, &above, up, aperture).offsets,
-        expected
-    );
-    assert_eq!(
-        face_interval(&plane, &below, down, aperture).offsets,
-        expected
-    );
+    for (face, direction) in [(&above, up), (&below, down)] {
+        let found = face_interval(&plane, face, direction, aperture);
+        assert_eq!(found.offsets, expected);
+    }
 }
