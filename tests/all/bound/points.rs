@@ -15,18 +15,12 @@ use lodmark::bound::{
     view_cell::{Shape, ViewCell},
 };
 
-use crate::support::{Random, at, bound_count};
-
-fn aperture(radians: f64) -> Aperture {
-    Aperture::radians(radians).expect("in range")
-}
+use crate::support::{Random, angle_between, aperture, at, bound_count, mixture, rows, square};
 
 #[track_caller]
 fn near(found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs(),
-        "{found} instead of {expected}"
-    );
+    let off = (found - expected).abs();
+    assert!(off <= relative * expected.abs(), "{found} for {expected}");
 }
 
 fn toward(gamma: f64) -> DVec3 {
@@ -35,43 +29,15 @@ fn toward(gamma: f64) -> DVec3 {
 
 #[test]
 fn the_extent_for_one_viewpoint_is_that_of_the_corrected_equation_6() {
-    for (v, m, d, theta, t) in [
-        (
-            at(0., 0., 0.),
-            at(0., 0., 10.),
-            at(1., 0., 0.),
-            0.1,
-            1.0033467208545053,
-        ),
-        (
-            at(1., 2., 3.),
-            at(4., -1., 2.),
-            at(0., 0.6, 0.8),
-            0.05,
-            0.26202160827883486,
-        ),
-        (
-            at(0., 0., 0.),
-            at(3., 0., 4.),
-            at(0.6, 0., 0.8),
-            0.2,
-            f64::INFINITY,
-        ),
-        (
-            at(0., 0., 0.),
-            at(2., 1., 0.),
-            at(-1., 0., 0.),
-            0.3,
-            0.9555245108532735,
-        ),
-        (
-            at(0., 0., 0.),
-            at(2., 1., 0.),
-            at(-0.8944271909999159, -0.4472135954999579, 0.),
-            0.3,
-            2.23606797749979,
-        ),
-    ] {
+    // Viewpoint, point, direction, angle, and how far.
+    for [vx, vy, vz, mx, my, mz, dx, dy, dz, theta, t] in rows(
+        "0 0 0  0  0 10   1   0   0    0.1   1.0033467208545053
+         1 2 3  4 -1  2   0   0.6 0.8  0.05  0.26202160827883486
+         0 0 0  3  0  4   0.6 0   0.8  0.2   inf
+         0 0 0  2  1  0  -1   0   0    0.3   0.9555245108532735
+         0 0 0  2  1  0  -0.8944271909999159 -0.4472135954999579 0  0.3  2.23606797749979",
+    ) {
+        let (v, m, d) = (at(vx, vy, vz), at(mx, my, mz), at(dx, dy, dz));
         let found = extent_from(v, m, d, aperture(theta));
         let cell = ViewCell::point(v).expect("a point");
         let over = extent(&cell, m, d, aperture(theta));
@@ -121,27 +87,14 @@ fn the_extent_for_a_segment_is_the_published_one() {
 
 #[test]
 fn the_error_over_a_segment_is_the_published_one() {
-    for (ends, m, s, expected) in [
-        (
-            [-2., 2.],
-            at(0., 1., 0.),
-            at(1., 2., 0.),
-            0.7853981633974483,
-        ),
-        (
-            [0., 5.],
-            at(-1., 1., 0.),
-            at(1., 1., 0.),
-            1.5707963267948966,
-        ),
-        (
-            [3., 4.],
-            at(0., 1., 0.),
-            at(1., 0.5, 0.),
-            0.08096147072083958,
-        ),
-    ] {
-        let cell = ViewCell::segment(ends.map(|x| at(x, 0.0, 0.0))).expect("a segment");
+    for [first, last, mx, my, sx, sy, expected] in rows(
+        "-2 2   0 1  1 2    0.7853981633974483
+          0 5  -1 1  1 1    1.5707963267948966
+          3 4   0 1  1 0.5  0.08096147072083958",
+    ) {
+        let (m, s) = (at(mx, my, 0.0), at(sx, sy, 0.0));
+        let ends = [first, last].map(|x| at(x, 0.0, 0.0));
+        let cell = ViewCell::segment(ends).expect("a segment");
         near(error(&cell, m, s).radians, expected, 1e-13);
         near(error(&cell, s, m).radians, expected, 1e-13);
     }
@@ -149,26 +102,16 @@ fn the_error_over_a_segment_is_the_published_one() {
 
 #[test]
 fn the_extent_for_a_polygon_is_the_published_one() {
-    let square = [
-        at(-1., -1., 0.),
-        at(1., -1., 0.),
-        at(1., 1., 0.),
-        at(-1., 1., 0.),
-    ];
-    let cell = ViewCell::polygon(&square).expect("a square");
-    for (m, d, theta, t) in [
-        (at(0., 0., 2.), at(0., 0., 1.), 0.1, 0.4960742455718246),
-        (at(0., 0., 2.), at(0., 0., -1.), 0.1, 0.37278742011150395),
-        (at(0., 0., 2.), at(1., 0., 0.), 0.1, 0.20016683350215514),
-        (at(3., 1., 2.), at(0.6, 0.8, 0.), 0.15, 0.5080415684989794),
-        (
-            at(5., -4., 1.),
-            at(-0.36, 0.48, 0.8),
-            0.08,
-            0.4322567056049239,
-        ),
-        (at(0., 0., 0.5), at(0., 0., 1.), 0.6, 1.2969627005148379),
-    ] {
+    let cell = ViewCell::polygon(&square()).expect("a square");
+    for [mx, my, mz, dx, dy, dz, theta, t] in rows(
+        "0  0 2     0    0     1    0.1   0.4960742455718246
+         0  0 2     0    0    -1    0.1   0.37278742011150395
+         0  0 2     1    0     0    0.1   0.20016683350215514
+         3  1 2     0.6  0.8   0    0.15  0.5080415684989794
+         5 -4 1    -0.36 0.48  0.8  0.08  0.4322567056049239
+         0  0 0.5   0    0     1    0.6   1.2969627005148379",
+    ) {
+        let (m, d) = (at(mx, my, mz), at(dx, dy, dz));
         let found = extent(&cell, m, d, aperture(theta));
         near(found.length, t, 1e-9);
         // The error of a point at the extent is the aperture.
@@ -201,11 +144,8 @@ impl Sampler<'_> {
                 *point + x * far(numbers[0]) + normal.cross(x) * far(numbers[1]) - *normal * deep
             }
             _ => {
-                let corners = self.cell.corners().expect("bounded");
                 let weights: Vec<f64> = numbers.iter().map(|&x| x * x * x).collect();
-                let sum: f64 = weights.iter().sum();
-                let mixed = corners.iter().zip(&weights).map(|(&c, &w)| c * (w / sum));
-                mixed.sum()
+                mixture(self.cell.corners().expect("bounded"), &weights)
             }
         }
     }
@@ -215,22 +155,12 @@ impl Sampler<'_> {
         let n = self.dimensions();
         let mut best = (f64::NEG_INFINITY, vec![0.0; n]);
         for round in 0..160 {
-            let reach = if round < 60 {
-                1.0
-            } else {
-                libm::exp(-0.12 * f64::from(round - 60))
+            let reach = libm::exp(-0.12 * f64::from(round - 60));
+            let mut next = |&x: &f64| match round {
+                0..60 => random.unit(),
+                _ => (x + reach * random.between(-1.0, 1.0)).clamp(0.0, 1.0),
             };
-            let numbers: Vec<f64> = best
-                .1
-                .iter()
-                .map(|&x| {
-                    if round < 60 {
-                        random.unit()
-                    } else {
-                        (x + reach * random.between(-1.0, 1.0)).clamp(0.0, 1.0)
-                    }
-                })
-                .collect();
+            let numbers: Vec<f64> = best.1.iter().map(&mut next).collect();
             if numbers.iter().sum::<f64>() <= 0.0 {
                 continue;
             }
@@ -335,30 +265,22 @@ fn no_sampled_viewpoint_beats_a_claimed_extent() {
             if length.is_infinite() {
                 unbounded += 1;
                 // The angle between the ray to the point and the direction bounds every move.
-                let seen = sampler.largest(&mut random, |v| {
-                    angle_from(DVec3::ZERO, point - v, direction)
-                });
+                let of_ray = |v| angle_from(DVec3::ZERO, point - v, direction);
+                let seen = sampler.largest(&mut random, of_ray);
                 assert!(seen <= theta + 1e-7, "{told}: {seen}");
                 continue;
             }
-            let moved = point + direction * length;
+            let mut moved = point + direction * length;
             let from = viewpoint.expect("one that limits it");
-            assert!(
-                cell.distance_to_point(from) <= 1e-9 * (1.0 + from.length()),
-                "{told}: {from} lies outside"
-            );
-            let claimed = angle_between(from, point, moved);
+            let off = cell.distance_to_point(from);
+            assert!(off <= 1e-9 * (1.0 + from.length()), "{told}: {from}");
             // Towards a viewer the point may move up to the viewer, where it is seen under every angle and none.
-            let moved = if (moved - from).length() < 1e-6 * (point - from).length() {
-                point + direction * (length * (1.0 - 1e-6))
+            if (moved - from).length() < 1e-6 * (point - from).length() {
+                moved = point + direction * (length * (1.0 - 1e-6));
             } else {
-                moved
-            };
-            if moved == point + direction * length {
-                assert!(
-                    (claimed - theta).abs() <= 1e-7 * theta,
-                    "{told}: {claimed} from {from}"
-                );
+                let claimed = angle_between(from, point, moved);
+                let off = (claimed - theta).abs();
+                assert!(off <= 1e-7 * theta, "{told}: {claimed} from {from}");
             }
             let seen = sampler.largest(&mut random, |v| angle_between(v, point, moved));
             worst = worst.max(seen / theta - 1.0);
@@ -385,36 +307,25 @@ fn no_sampled_viewpoint_beats_a_claimed_error() {
             // Positions are rounded, which a viewer close to them sees.
             let noise = 1e-14 / cell.distance_to_hull(&[point, moved]).max(1e-14);
             let sampler = Sampler { cell: &cell };
+            let radians = found.radians;
             if let Some(from) = found.viewpoint {
-                assert!(
-                    cell.distance_to_point(from) <= 1e-9 * (1.0 + from.length()),
-                    "{told}: {from} lies outside"
-                );
+                let off = cell.distance_to_point(from);
+                assert!(off <= 1e-9 * (1.0 + from.length()), "{told}: {from}");
                 let claimed = angle_between(from, point, moved);
-                assert!(
-                    (claimed - found.radians).abs() <= 1e-7 * claimed + noise,
-                    "{told}: {claimed} from {from}"
-                );
+                let off = (claimed - radians).abs();
+                assert!(off <= 1e-7 * claimed + noise, "{told}: {claimed} at {from}");
             } else {
-                assert!(found.radians <= 0.0 || found.radians >= PI, "{told}");
+                assert!(radians <= 0.0 || radians >= PI, "{told}");
             }
             let seen = sampler.largest(&mut random, |v| angle_between(v, point, moved));
-            if found.radians > 1e-6 {
-                worst = worst.max(seen / found.radians - 1.0);
+            if radians > 1e-6 {
+                worst = worst.max(seen / radians - 1.0);
             }
-            assert!(
-                seen <= found.radians * (1.0 + 1e-7) + noise,
-                "{told}: {seen} above {found:?}"
-            );
+            let most = radians * (1.0 + 1e-7) + noise;
+            assert!(seen <= most, "{told}: {seen} above {found:?}");
         }
     }
     eprintln!("a sampled angle was above the error by at most {worst:e} of it");
-}
-
-/// The angle at `v`, by its own formula: twice the angle whose tangent is a ratio of lengths (Kahan).
-fn angle_between(v: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let (a, b) = ((a - v).normalize(), (b - v).normalize());
-    2.0 * libm::atan2((a - b).length(), (a + b).length())
 }
 
 #[test]
@@ -455,17 +366,11 @@ fn without_an_angle_only_moves_that_nobody_sees_are_valid() {
 
 #[test]
 fn a_point_in_the_cell_may_not_move_and_its_error_is_half_a_turn() {
-    let square = [
-        at(-1., -1., 0.),
-        at(1., -1., 0.),
-        at(1., 1., 0.),
-        at(-1., 1., 0.),
-    ];
     for cell in [
         ViewCell::point(DVec3::ZERO),
         ViewCell::segment([-DVec3::X, DVec3::X]),
         ViewCell::line(DVec3::ZERO, DVec3::Y),
-        ViewCell::polygon(&square),
+        ViewCell::polygon(&square()),
         ViewCell::plane(DVec3::ZERO, DVec3::Z),
         ViewCell::cuboid(-DVec3::ONE, DVec3::ONE),
         ViewCell::half_space(DVec3::ZERO, DVec3::Z),
@@ -487,19 +392,10 @@ fn a_point_in_the_cell_may_not_move_and_its_error_is_half_a_turn() {
 fn a_move_straight_away_from_every_viewer_is_not_seen() {
     let cell = ViewCell::segment([DVec3::ZERO, DVec3::X]).expect("a segment");
     let m = at(5.0, 0.0, 0.0);
-    assert_eq!(
-        extent(&cell, m, DVec3::X, aperture(0.1)).length,
-        f64::INFINITY
-    );
+    let length = |d| extent(&cell, m, d, aperture(0.1)).length;
+    assert_eq!(length(DVec3::X), f64::INFINITY);
     assert_eq!(error(&cell, m, at(9.0, 0.0, 0.0)).radians, 0.0);
     // Along a line that runs through the cell's line the other way round it ends at the nearest viewer.
-    near(
-        extent(&cell, m, -DVec3::X, aperture(0.1)).length,
-        4.0,
-        1e-15,
-    );
-    assert_eq!(
-        extent(&cell, m, DVec3::ZERO, aperture(0.1)).length,
-        f64::INFINITY
-    );
+    near(length(-DVec3::X), 4.0, 1e-15);
+    assert_eq!(length(DVec3::ZERO), f64::INFINITY);
 }

@@ -13,16 +13,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{at, bounded, distance};
-
-fn square() -> [DVec3; 4] {
-    [
-        at(-1.0, -1.0, 0.0),
-        at(1.0, -1.0, 0.0),
-        at(1.0, 1.0, 0.0),
-        at(-1.0, 1.0, 0.0),
-    ]
-}
+use crate::support::{at, bounded, distance, square};
 
 #[test]
 fn what_is_no_cell_is_refused_with_the_reason() {
@@ -42,7 +33,7 @@ fn what_is_no_cell_is_refused_with_the_reason() {
         (ViewCell::polygon(&[a, c, b, d]), "polygon"),
         (
             ViewCell::polygon(&[a, b, c, -0.1 * d]),
-            "not convex at corner 3",
+            "convex at corner 3",
         ),
         (ViewCell::polygon(&[a, DVec3::ZERO, c]), "no area"),
         (ViewCell::polyhedron(&[a, b, c]), "4 to 64"),
@@ -127,52 +118,36 @@ fn a_cell_file_gives_back_the_cell_that_was_written() {
 #[test]
 fn a_box_in_a_cell_file_is_what_the_manual_shows() {
     let text = r#"{"schema": 1, "cell": {"box": {"low": [0, 0, 0], "high": [1, 2, 3]}}}"#;
-    assert_eq!(
-        file::from_json(text, "-").expect("reads"),
-        ViewCell::cuboid(DVec3::ZERO, at(1.0, 2.0, 3.0)).expect("a box")
-    );
+    let expected = ViewCell::cuboid(DVec3::ZERO, at(1.0, 2.0, 3.0)).expect("a box");
+    assert_eq!(file::from_json(text, "-").expect("reads"), expected);
 }
 
 #[test]
 fn a_damaged_cell_file_is_refused_with_what_was_expected() {
-    for (text, said) in [
+    let cells = r#"
+        half_space: {"ball": [0, 0, 0]}
+        3: {"point": [0, 0]}
+        range: {"point": [0, 0, 1e999]}
+        same point: {"segment": [[0, 0, 0], [0, 0, 0]]}
+        normal: {"plane": {"point": [0, 0, 0]}}
+        x: {"point": [0, 0, 1]}, "x": 1
+        d: {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1], "d": 1}}"#;
+    let of_cell = |line: &'static str| {
+        let (said, cell) = line.trim().split_once(": ").expect("a pair");
+        (format!(r#"{{"schema": 1, "cell": {cell}}}"#), said)
+    };
+    let whole = [
         ("", "cell file"),
         ("[]", "cell file"),
         (r#"{"schema": 2, "cell": {"ball": 1}}"#, "schema 2"),
         (r#"{"schema": 1}"#, "cell"),
-        (
-            r#"{"schema": 1, "cell": {"ball": [0, 0, 0]}}"#,
-            "half_space",
-        ),
-        (r#"{"schema": 1, "cell": {"point": [0, 0]}}"#, "3"),
-        (
-            r#"{"schema": 1, "cell": {"point": [0, 0, 1e999]}}"#,
-            "range",
-        ),
-        (
-            r#"{"schema": 1, "cell": {"segment": [[0, 0, 0], [0, 0, 0]]}}"#,
-            "same point",
-        ),
-        (
-            r#"{"schema": 1, "cell": {"plane": {"point": [0, 0, 0]}}}"#,
-            "normal",
-        ),
-        (
-            r#"{"schema": 1, "cell": {"point": [0, 0, 1]}, "x": 1}"#,
-            "x",
-        ),
-        (
-            r#"{"schema": 1, "cell": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1], "d": 1}}}"#,
-            "d",
-        ),
-    ] {
-        let error = file::from_json(text, "cell.json").expect_err(text);
+    ];
+    let whole = whole.map(|(text, said)| (text.to_string(), said));
+    for (text, said) in cells.lines().skip(1).map(of_cell).chain(whole) {
+        let error = file::from_json(&text, "cell.json").expect_err(&text);
         assert_eq!(error.exit_code(), 3, "{text}");
-        let message = error.to_string();
-        assert!(
-            message.contains("cell.json") && message.contains(said),
-            "{message}"
-        );
+        let told = error.to_string();
+        assert!(told.contains("cell.json") && told.contains(said), "{told}");
     }
 }
 
@@ -188,8 +163,8 @@ mod brute {
     }
 
     pub(super) fn segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
-        let mut best = point_segment(a, c, d)
-            .min(point_segment(b, c, d))
+        let first = point_segment(a, c, d).min(point_segment(b, c, d));
+        let mut best = first
             .min(point_segment(c, a, b))
             .min(point_segment(d, a, b));
         let (u, v, w) = (b - a, d - c, a - c);

@@ -34,6 +34,11 @@ pub(crate) fn mesh_of(
     Mesh::from_triangles(positions.into(), triangles.into()).expect("valid")
 }
 
+/// A square of size 2 around the origin, counter-clockwise from above.
+pub(crate) fn square() -> [DVec3; 4] {
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| at(x, y, 0.0))
+}
+
 /// The corners of every triangle.
 pub(crate) fn faces(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     let corners = |t: &[u32; 3]| t.map(|v| mesh.positions()[v as usize]);

@@ -20,7 +20,7 @@ pub(crate) use command::{
 pub(crate) use folds::faults;
 pub(crate) use geometry::{
     angle_between, aperture, at, distance, distance_by_descent, distance_to_all, faces, lattice,
-    mesh_of, mixture, moved,
+    mesh_of, mixture, moved, square,
 };
 pub(crate) use gltf::GltfBuilder;
 pub(crate) use meshes::{framed, live, scene_of, snapshot};

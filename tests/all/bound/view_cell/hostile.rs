@@ -7,8 +7,7 @@ use lodmark::bound::{
 };
 use proptest::prelude::*;
 
-use super::{at, square};
-use crate::support::cases;
+use crate::support::{at, cases, split, square};
 
 /// One file of each kind.
 fn files() -> Vec<String> {
@@ -25,6 +24,10 @@ fn files() -> Vec<String> {
     ]
     .map(|cell| file::to_json(&cell.expect("a cell")).expect("has a form"))
     .into()
+}
+
+fn file_of(body: &str) -> String {
+    format!("{{\"schema\": 1, \"cell\": {{{body}}}}}")
 }
 
 /// Refused as input, or a cell that gives numbers when asked.
@@ -62,14 +65,11 @@ fn deep_or_endless_cell_files_cost_no_more_than_their_bytes() {
     for text in [
         deep("[", "]"),
         deep("{\"schema\":", "}"),
-        format!(
-            "{{\"schema\": 1, \"cell\": {{\"point\": {}}}}}",
-            deep("[", "]")
-        ),
-        format!(
-            "{{\"schema\": 1, \"cell\": {{\"polygon\": [{}[0,0,0]]}}}}",
+        file_of(&format!("\"point\": {}", deep("[", "]"))),
+        file_of(&format!(
+            "\"polygon\": [{}[0,0,0]]",
             "[1,2,3],".repeat(20_000)
-        ),
+        )),
         "\0".repeat(1000),
         "\u{feff}{\"schema\": 1, \"cell\": {\"point\": [0,0,0]}}".into(),
     ] {
@@ -87,40 +87,17 @@ fn deep_or_endless_cell_files_cost_no_more_than_their_bytes() {
         assert_eq!(error.exit_code(), 3);
         assert!(error.to_string().contains(said), "{error}");
     }
-    assert_eq!(
-        file::read(folder.path()).expect_err("a folder").exit_code(),
-        5
-    );
+    let refused = file::read(folder.path()).expect_err("a folder");
+    assert_eq!(refused.exit_code(), 5);
 }
 
 /// Numbers as files have them, and as they do not.
 fn number() -> impl Strategy<Value = String> {
-    let odd = [
-        "NaN",
-        "Infinity",
-        "-Infinity",
-        "1e999",
-        "-1e999",
-        "1e308",
-        "-1.7976931348623157e308",
-        "1e-320",
-        "-0.0",
-        "5e-324",
-        "1e154",
-        "1e-160",
-        "null",
-        "\"1\"",
-        "true",
-        "[]",
-        "0x10",
-        "1_000",
-        "+1",
-        "01",
-        "12345678901234567890123456789012345678901234567890",
-    ];
+    let odd = "NaN Infinity -Infinity 1e999 -1e999 1e308 -1.7976931348623157e308 1e-320 -0.0 5e-324 1e154 1e-160 \
+               null \"1\" true [] 0x10 1_000 +1 01 12345678901234567890123456789012345678901234567890";
     prop_oneof![
         3 => (-3_i32..4).prop_map(|i| i.to_string()),
-        1 => prop::sample::select(odd.to_vec()).prop_map(String::from),
+        1 => prop::sample::select(split(odd)).prop_map(String::from),
     ]
 }
 
@@ -129,25 +106,23 @@ fn vector() -> impl Strategy<Value = String> {
 }
 
 fn body() -> impl Strategy<Value = String> {
-    let pair = |a: &'static str, b: &'static str| {
-        (vector(), vector())
-            .prop_map(move |(p, q)| format!("{{\"{a}\": {p}, \"{b}\": {q}}}"))
-            .boxed()
+    let pair = |kind: &'static str, a: &'static str, b: &'static str| {
+        let both = (vector(), vector());
+        both.prop_map(move |(p, q)| format!("\"{kind}\": {{\"{a}\": {p}, \"{b}\": {q}}}"))
     };
-    let list = |n: std::ops::Range<usize>| {
-        prop::collection::vec(vector(), n)
-            .prop_map(|v| format!("[{}]", v.join(",")))
-            .boxed()
+    let list = |kind: &'static str, n: std::ops::Range<usize>| {
+        let all = prop::collection::vec(vector(), n);
+        all.prop_map(move |v| format!("\"{kind}\": [{}]", v.join(",")))
     };
     prop_oneof![
         vector().prop_map(|v| format!("\"point\": {v}")),
-        list(1..4).prop_map(|v| format!("\"segment\": {v}")),
-        pair("point", "direction").prop_map(|v| format!("\"line\": {v}")),
-        list(0..7).prop_map(|v| format!("\"polygon\": {v}")),
-        pair("point", "normal").prop_map(|v| format!("\"plane\": {v}")),
-        list(0..9).prop_map(|v| format!("\"polyhedron\": {v}")),
-        pair("low", "high").prop_map(|v| format!("\"box\": {v}")),
-        pair("point", "normal").prop_map(|v| format!("\"half_space\": {v}")),
+        list("segment", 1..4),
+        pair("line", "point", "direction"),
+        list("polygon", 0..7),
+        pair("plane", "point", "normal"),
+        list("polyhedron", 0..9),
+        pair("box", "low", "high"),
+        pair("half_space", "point", "normal"),
     ]
 }
 
@@ -174,7 +149,7 @@ proptest! {
 
     #[test]
     fn a_cell_of_odd_numbers_is_never_a_panic(body in body()) {
-        let text = format!("{{\"schema\": 1, \"cell\": {{{body}}}}}");
+        let text = file_of(&body);
         let answer = judge(&text);
         prop_assert!(answer.is_ok(), "{text}: {answer:?}");
     }
