@@ -7,12 +7,11 @@ use glam::DVec3;
 use lodmark::{
     Silent,
     bound::{
-        correspondence::Correspondence,
         nearest_triangle::{NearestTriangle, originals},
         planar::Aperture,
         region::{profile, profile_normal, shell},
         surface::{Effort, Measure, measure},
-        verify::{AngleReport, Claim, Record, angles, distance},
+        verify::{AngleReport, Claim, angles, distance},
         view_cell::ViewCell,
     },
     io,
@@ -21,13 +20,14 @@ use lodmark::{
 };
 use tempfile::TempDir;
 
+use super::verify::{identity, read};
 use crate::support::{
-    Random, at, distance as to_triangle, expect, folder, lattice, lodmark, put, stdout,
+    Random, angle_between, at, distance_to_all, expect, faces, folder, lattice, lodmark, mesh_of,
+    mixture, put, stdout,
 };
 
 fn seen_from(v: DVec3, p: DVec3, s: DVec3) -> f64 {
-    let (a, b) = ((p - v).normalize(), (s - v).normalize());
-    2.0 * libm::atan2((a - b).length(), (a + b).length()).to_degrees()
+    angle_between(v, p, s).to_degrees()
 }
 
 /// Three faces at one edge, two of them with a needle between them, and open borders all around.
@@ -40,11 +40,9 @@ fn awkward(move_of: impl Fn(usize) -> DVec3) -> Mesh {
         at(0.5, 0.125, 1.0),
         at(0.5, 1e-9, 0.0),
     ];
+    let positions = (0..6).map(|i| positions[i] + move_of(i)).collect();
     let triangles = vec![[0, 5, 2], [5, 1, 2], [0, 1, 5], [1, 0, 3], [0, 1, 4]];
-    exact(
-        (0..6).map(|i| positions[i] + move_of(i)).collect(),
-        triangles,
-    )
+    exact(positions, triangles)
 }
 
 /// In double precision: without an angle even rounding is seen.
@@ -60,12 +58,7 @@ fn exact(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
 
 /// Every triangle stands for the one with its number.
 fn held(original: &Mesh, low: &Mesh, cell: &ViewCell, degrees: f64) -> AngleReport {
-    let corners = (0..original.triangles().len()).map(|t| original.corners(t));
-    let mut bytes = Vec::new();
-    Correspondence::identity(corners.collect())
-        .write(original, low, &mut bytes)
-        .expect("memory");
-    let record = Record::from_bytes(&bytes, "a.corr").expect("just written");
+    let record = read(&identity(original, low));
     angles(original, low, cell, degrees, Some(&record), 500, &Silent).expect("fits")
 }
 
@@ -78,13 +71,8 @@ fn needles_and_third_faces_at_an_edge_hide_no_angle_from_the_verifier() {
         let size = [0.2, 1e-3, 1e-6][case % 3];
         let steps = [0; 6].map(|_| at(by(), by(), by()) * size);
         // One vertex alone, the needle's tip among them, or all.
-        let low = awkward(|i| {
-            if case % 7 == 6 || i == case % 6 {
-                steps[i]
-            } else {
-                DVec3::ZERO
-            }
-        });
+        let moves = |i| case % 7 == 6 || i == case % 6;
+        let low = awkward(|i| if moves(i) { steps[i] } else { DVec3::ZERO });
         let ends = [at(-1.0 + by(), by(), 4.0), at(1.0, by(), 3.0 + by())];
         let cell = ViewCell::segment(ends).expect("a segment");
         let mut seen = 0.0_f64;
@@ -98,10 +86,8 @@ fn needles_and_third_faces_at_an_edge_hide_no_angle_from_the_verifier() {
         }
         let report = held(&mesh, &low, &cell, 45.0);
         let (most, worst) = (report.at_most_deg, report.worst.expect("sightings"));
-        assert!(
-            most.is_some_and(|most| seen <= most * (1.0 + 1e-9)),
-            "case {case}: {seen}, {report:?}"
-        );
+        let bounded = most.is_some_and(|most| seen <= most * (1.0 + 1e-9));
+        assert!(bounded, "case {case}: {seen}, {report:?}");
         let there = [worst.viewpoint, worst.point, worst.replacement].map(DVec3::from_array);
         let there = seen_from(there[0], there[1], there[2]);
         assert!((there - worst.angle_deg).abs() < 1e-6 * there + 1e-9);
@@ -114,28 +100,18 @@ fn needles_and_third_faces_at_an_edge_hide_no_angle_from_the_verifier() {
 #[test]
 fn a_third_face_at_an_edge_counts_in_a_distance() {
     let mesh = awkward(|_| DVec3::ZERO);
-    let corners =
-        |m: &Mesh| -> Vec<[DVec3; 3]> { (0..m.triangles().len()).map(|t| m.corners(t)).collect() };
     for vertex in 0..6 {
         let by = at(0.03, -0.05, 0.08);
         let low = awkward(|i| if i == vertex { by } else { DVec3::ZERO });
         let check = |claim| distance(&mesh, &low, claim, false, 300, &Silent).expect("triangles");
         let report = check(Claim::Absolute(1.0));
-        for (direction, [from, to]) in report.directions.iter().zip([[&low, &mesh], [&mesh, &low]])
-        {
-            let others = corners(to);
-            let mut most = 0.0_f64;
-            for triangle in corners(from) {
-                for p in lattice(triangle, 12) {
-                    let all = others.iter().map(|&t| to_triangle(p, t));
-                    most = most.max(all.fold(f64::INFINITY, f64::min));
-                }
-            }
-            assert!(
-                most <= direction.upper_bound * (1.0 + 1e-9)
-                    && direction.upper_bound <= by.length() * 1.001,
-                "vertex {vertex}: {most}, {direction:?}"
-            );
+        for (d, [from, to]) in report.directions.iter().zip([[&low, &mesh], [&mesh, &low]]) {
+            let (others, upper) = (faces(to), d.upper_bound);
+            let points = faces(from).into_iter().flat_map(|t| lattice(t, 12));
+            let distances = points.map(|p| distance_to_all(p, &others));
+            let most = distances.fold(0.0, f64::max);
+            let near = most <= upper * (1.0 + 1e-9) && upper <= by.length() * 1.001;
+            assert!(near, "vertex {vertex}: {most}, {d:?}");
         }
         let farthest = report.directions.iter().map(|d| d.farthest.distance);
         let farthest = farthest.fold(0.0, f64::max);
@@ -148,8 +124,8 @@ fn a_third_face_at_an_edge_counts_in_a_distance() {
 fn no_viewer_inside_a_closed_mesh_sees_a_move_beyond_the_bound() {
     let mesh = canonical(&generate::icosphere(2)).mesh;
     let step = at(0.02, -0.01, 0.0);
-    let moved = mesh.positions().iter().map(|&p| p + step).collect();
-    let low = Mesh::from_triangles(moved, mesh.triangles().to_vec()).expect("valid");
+    let moved: Vec<DVec3> = mesh.positions().iter().map(|&p| p + step).collect();
+    let low = mesh_of(moved, mesh.triangles());
     let nearest = NearestTriangle::new(&low).expect("not empty");
     let mut random = Random(7);
     for cell in [
@@ -159,21 +135,12 @@ fn no_viewer_inside_a_closed_mesh_sees_a_move_beyond_the_bound() {
         ViewCell::cuboid(DVec3::splat(-0.25), DVec3::splat(0.3)),
     ] {
         let cell = cell.expect("a cell");
-        let angle = Measure::Angle(&cell);
-        let found = measure(
-            originals(&mesh),
-            &nearest,
-            angle,
-            Effort::default(),
-            &Silent,
-        );
+        let (angle, effort) = (Measure::Angle(&cell), Effort::default());
+        let found = measure(originals(&mesh), &nearest, angle, effort, &Silent);
         let found = found.expect("nobody interrupts");
         // Nobody is nearer than 0.3 to the sphere, whose faces are 0.97 from the middle and farther.
-        let most = libm::asin(step.length() / 0.3);
-        assert!(
-            found.bound > 0.0 && found.bound < most,
-            "{cell:?}: {found:?}"
-        );
+        let range = f64::MIN_POSITIVE..libm::asin(step.length() / 0.3);
+        assert!(range.contains(&found.bound), "{cell:?}: {found:?}");
         let worst = found.worst.expect("it moved");
         let from = worst.viewpoint.expect("no viewer is on the mesh");
         assert!(cell.distance_to_point(from) < 1e-9, "{cell:?}: {from}");
@@ -185,9 +152,7 @@ fn no_viewer_inside_a_closed_mesh_sees_a_move_beyond_the_bound() {
         let mut brute = 0.0_f64;
         for _ in 0..4_000 {
             let weights: Vec<f64> = corners.iter().map(|_| random.unit() + 1e-9).collect();
-            let sum: f64 = weights.iter().sum();
-            let mix = corners.iter().zip(&weights);
-            let eye = mix.fold(DVec3::ZERO, |all, (&c, &w)| all + c * (w / sum));
+            let eye = mixture(&corners, &weights);
             let p = mesh.positions()[random.below(mesh.positions().len())];
             brute = brute.max(seen_from(eye, p, p + step));
         }
@@ -199,8 +164,10 @@ fn no_viewer_inside_a_closed_mesh_sees_a_move_beyond_the_bound() {
 #[test]
 fn viewers_on_what_stands_for_the_original_are_found_where_none_is_on_the_original() {
     let triangle = |z: f64| {
-        let corners = [(-1.0, -1.0), (2.0, -0.5), (0.3, 1.5)].map(|(x, y)| at(x, y, z));
-        Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid")
+        mesh_of(
+            [at(-1.0, -1.0, z), at(2.0, -0.5, z), at(0.3, 1.5, z)],
+            [[0, 1, 2]],
+        )
     };
     for step in [0.5, 1e-2, 1e-4, 1e-6] {
         for (low, high) in [
@@ -244,12 +211,9 @@ fn without_an_angle_no_step_aside_passes_and_with_nearly_a_right_one_no_wider_on
         let said = said.expect("sightings").angle_deg;
         assert!((said - degrees).abs() < 0.1 && said > last, "{said}");
         last = said;
-        let above = 0.5 * (said + 90.0);
-        assert!(
-            held(&face(start), &face(end), &cell, above).proven,
-            "{said}"
-        );
-        assert!(!held(&face(start), &face(end), &cell, said - 1e-4).holds);
+        let held = |degrees| held(&face(start), &face(end), &cell, degrees);
+        assert!(held(0.5 * (said + 90.0)).proven, "{said}");
+        assert!(!held(said - 1e-4).holds);
     }
 }
 
@@ -286,12 +250,12 @@ fn no_viewer_of_an_endless_cell_sees_a_move_inside_a_drawn_region() {
                     "line" => base + at(1.0, 0.3, 0.1) * (way.x + way.y),
                     _ => {
                         let n = at(0.2, 0.1, -1.0).normalize();
-                        let foot = base + way - n * way.dot(n);
-                        if name == "plane" {
-                            foot
+                        let deep = if name == "plane" {
+                            0.0
                         } else {
-                            foot - n * way.dot(n).abs()
-                        }
+                            way.dot(n).abs()
+                        };
+                        base + way - n * (way.dot(n) + deep)
                     }
                 };
                 let seen = seen_from(eye, point, moved);
@@ -309,18 +273,17 @@ fn scene() -> TempDir {
     let dir = folder();
     put(&dir, "ref.ply", &awkward(|_| DVec3::ZERO));
     put(&dir, "low.ply", &awkward(|_| at(0.0, 0.0, 0.0078125)));
-    for (name, cell) in [
-        ("on", r#"{"point": [0.25, 0, 0]}"#),
+    let (low, high) = (at(0.25, 0.25, -1.0), at(0.5, 0.5, 1.0));
+    let cells = [
+        ("on", ViewCell::point(at(0.25, 0.0, 0.0))),
+        ("cut", ViewCell::cuboid(low, high)),
         (
-            "cut",
-            r#"{"box": {"low": [0.25, 0.25, -1], "high": [0.5, 0.5, 1]}}"#,
+            "far",
+            ViewCell::segment([at(0.0, 0.0, 4.0), at(1.0, 0.0, 4.0)]),
         ),
-        ("far", r#"{"segment": [[0, 0, 4], [1, 0, 4]]}"#),
-    ] {
-        let text = format!(r#"{{"schema": 1, "cell": {cell}}}"#);
-        fs::write(dir.path().join(format!("{name}.json")), text).expect("writes");
-    }
-    for (name, cell) in cells_without_end() {
+    ];
+    let cells = cells.map(|(name, cell)| (name, cell.expect("a cell")));
+    for (name, cell) in cells.into_iter().chain(cells_without_end()) {
         let text = lodmark::bound::view_cell::file::to_json(&cell).expect("JSON");
         fs::write(dir.path().join(format!("{name}.json")), text).expect("writes");
     }
@@ -331,56 +294,25 @@ fn scene() -> TempDir {
 fn every_command_has_an_answer_to_an_awkward_scene() {
     let dir = scene();
     for cell in ["on", "cut", "far", "line", "plane", "half_space"] {
-        let file = format!("{cell}.json");
-        let meshes = ["ref.ply", "out.ply"];
         for degrees in ["0", "1", "89.9999"] {
-            let bounded = [
-                "simplify",
-                "ref.ply",
-                "out.ply",
-                "--method",
-                "view-bounded",
-                "--cell",
-                &file,
-                "--error-deg",
-                degrees,
-                "--bound-out",
-                "b.corr",
-            ];
-            expect(&dir, 0, &bounded);
-            let verify = [&["verify"][..], &meshes].concat();
-            let claim = [
-                "--cell",
-                &file,
-                "--error-deg",
-                degrees,
-                "--samples",
-                "200",
-                "--bound",
-                "b.corr",
-            ];
-            expect(&dir, 0, &[&verify[..], &claim].concat());
+            let claim = format!("--cell {cell}.json --error-deg {degrees}");
+            let to = "ref.ply out.ply --method view-bounded --bound-out b.corr";
+            expect(&dir, 0, &format!("simplify {to} {claim}"));
+            let by = "ref.ply out.ply --samples 200 --bound b.corr";
+            expect(&dir, 0, &format!("verify {by} {claim}"));
         }
-        let bound = lodmark(&dir, &["bound", "ref.ply", "low.ply", "--cell", &file]);
-        let said = stdout(&bound);
-        assert!(bound.status.success(), "{cell}: {bound:?}");
+        let bound = |low| format!("bound ref.ply {low} --cell {cell}.json");
+        let moved = lodmark(&dir, &bound("low.ply"));
+        let said = stdout(&moved);
+        assert!(moved.status.success(), "{cell}: {moved:?}");
         // Whoever stands on what moved sees half a turn.
         let half_turn = said.contains("guaranteed        180.0000");
         assert_eq!(half_turn, ["on", "cut"].contains(&cell), "{cell}: {said}");
         assert!(!said.contains("NaN"), "{said}");
-        expect(&dir, 0, &["bound", "ref.ply", "ref.ply", "--cell", &file]);
+        expect(&dir, 0, &bound("ref.ply"));
         for (out, figure) in [("r.svg", true), ("r.ply", false)] {
-            let region = [
-                "bound-region",
-                out,
-                "--cell",
-                &file,
-                "--point",
-                "0.125,0.125,0.5",
-                "--error-deg",
-                "3",
-            ];
-            expect(&dir, 0, &region);
+            let of = format!("--cell {cell}.json --point 0.125,0.125,0.5 --error-deg 3");
+            expect(&dir, 0, &format!("bound-region {out} {of}"));
             if figure {
                 let text = fs::read_to_string(dir.path().join(out)).expect("written");
                 assert!(text.contains("<polygon") && !text.contains("NaN"), "{text}");
@@ -393,21 +325,26 @@ fn every_command_has_an_answer_to_an_awkward_scene() {
             }
         }
     }
+    let within = |error| format!("simplify ref.ply t.ply --method tolerance --error {error}");
     for error in ["0.01", "1e300"] {
-        let within = ["simplify", "ref.ply", "t.ply", "--method", "tolerance"];
-        expect(&dir, 0, &[&within[..], &["--error", error]].concat());
-        let held = ["verify", "ref.ply", "t.ply", "--samples", "200"];
-        expect(&dir, 0, &[&held[..], &["--error", error]].concat());
+        expect(&dir, 0, &within(error));
+        expect(
+            &dir,
+            0,
+            &format!("verify ref.ply t.ply --samples 200 --error {error}"),
+        );
     }
     // No angle at all: the moved mesh may never be shown, the same one always.
     for (low, said) in [
         ("low.ply", "at no distance"),
         ("ref.ply", "distance of 0 on"),
     ] {
-        let output = lodmark(&dir, &["bound", "ref.ply", low, "--switch-deg", "0"]);
-        assert!(stdout(&output).contains(said), "{}", stdout(&output));
+        let output = stdout(&lodmark(
+            &dir,
+            &format!("bound ref.ply {low} --switch-deg 0"),
+        ));
+        assert!(output.contains(said), "{output}");
     }
-    let tiny = ["simplify", "ref.ply", "t.ply", "--method", "tolerance"];
-    let said = expect(&dir, 2, &[&tiny[..], &["--error", "1e-300"]].concat());
+    let said = expect(&dir, 2, &within("1e-300"));
     assert!(said.contains("1e-300") && said.len() < 300, "{said}");
 }

@@ -3,3 +3,5 @@
 mod angle;
 mod distance;
 mod record;
+
+pub(super) use angle::{identity, read};

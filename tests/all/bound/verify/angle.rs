@@ -16,22 +16,18 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::support::{
-    Random, bounded, code, expect, folder, lodmark, meshes, moved, put, same_on_all_threads, stdout,
+    Random, at, bounded, code, expect, faces, folder, json, lattice, lodmark, mesh_of, meshes,
+    mixture, moved, put, same_on_all_threads, stdout,
 };
 
 /// The record that says that every triangle of `low` stands for the same one of `original`.
-pub(super) fn identity(original: &Mesh, low: &Mesh) -> Vec<u8> {
-    let corners = (0..original.triangles().len())
-        .map(|t| original.corners(t))
-        .collect();
-    let mut bytes = Vec::new();
-    Correspondence::identity(corners)
-        .write(original, low, &mut bytes)
-        .expect("memory");
+pub(crate) fn identity(original: &Mesh, low: &Mesh) -> Vec<u8> {
+    let (map, mut bytes) = (Correspondence::identity(faces(original)), Vec::new());
+    map.write(original, low, &mut bytes).expect("memory");
     bytes
 }
 
-pub(super) fn read(bytes: &[u8]) -> Record {
+pub(crate) fn read(bytes: &[u8]) -> Record {
     Record::from_bytes(bytes, "a.corr").expect("just written")
 }
 
@@ -43,20 +39,11 @@ fn check(original: &Mesh, low: &Mesh, cell: &ViewCell, degrees: f64) -> AngleRep
 /// The largest angle over many viewpoints and points, by the cosine.
 fn brute(original: &Mesh, low: &Mesh, viewpoints: &[DVec3]) -> f64 {
     let mut least = 1.0_f64;
-    for t in 0..original.triangles().len() {
-        let (a, b) = (original.corners(t), low.corners(t));
-        for i in 0..=8 {
-            for j in 0..=8 - i {
-                let w = [
-                    f64::from(i) / 8.0,
-                    f64::from(j) / 8.0,
-                    f64::from(8 - i - j) / 8.0,
-                ];
-                let at = |c: [DVec3; 3]| c[0] * w[0] + c[1] * w[1] + c[2] * w[2];
-                for &v in viewpoints {
-                    let (p, s) = (at(a) - v, at(b) - v);
-                    least = least.min(p.dot(s) / (p.length() * s.length()));
-                }
+    for (a, b) in faces(original).into_iter().zip(faces(low)) {
+        for (p, s) in lattice(a, 8).zip(lattice(b, 8)) {
+            for &v in viewpoints {
+                let (p, s) = (p - v, s - v);
+                least = least.min(p.dot(s) / (p.length() * s.length()));
             }
         }
     }
@@ -83,10 +70,8 @@ fn a_vertex_one_percent_too_far_aside_is_found_and_one_percent_less_is_not() {
         assert_eq!(report.holds, holds, "{report:?}");
         assert_eq!(report.gap, None);
         let worst = report.worst.expect("sightings");
-        assert!(
-            (worst.angle_deg - degrees * share).abs() < 1e-4,
-            "{worst:?}"
-        );
+        let off = (worst.angle_deg - degrees * share).abs();
+        assert!(off < 1e-4, "{worst:?}");
         assert!((DVec3::from_array(worst.point) - p).length() < 1e-4);
         assert_eq!(report.violations == 0, holds);
         assert!(!holds || report.undecided_area <= 0.0, "{report:?}");
@@ -105,10 +90,8 @@ fn a_viewpoint_in_the_middle_of_a_cell_is_found_though_no_corner_sees_as_much() 
     let truth = libm::atan2(0.5 * step, 20.0).to_degrees() * 2.0;
     let report = check(&mesh, &low, &cell, truth / 1.01);
     let worst = report.worst.expect("sightings").angle_deg;
-    assert!(
-        !report.holds && (worst - truth).abs() < 1e-3 * truth,
-        "{worst} {truth}"
-    );
+    let off = (worst - truth).abs();
+    assert!(!report.holds && off < 1e-3 * truth, "{worst} {truth}");
     let held = check(&mesh, &low, &cell, truth * 1.01);
     assert!(held.holds && held.undecided_area <= 0.0, "{held:?}");
     // The largest angle is known to a five-hundredth, but on which side of a claim it is much better.
@@ -121,22 +104,16 @@ fn without_a_record_only_the_nearest_in_angle_is_checked() {
     let mesh = terrain();
     let viewer = DVec3::new(3.0, 3.0, 40.0);
     let cell = ViewCell::point(viewer).expect("a point");
-    // Pushed away along the lines of sight: nothing to see, whatever the distance.
-    let pushed: Vec<DVec3> = mesh
-        .positions()
-        .iter()
-        .map(|&p| viewer + (p - viewer) * 1.25)
-        .collect();
-    let low = Mesh::from_triangles(pushed, mesh.triangles().to_vec()).expect("valid");
-    let look = |low: &Mesh, degrees| {
-        angles(&mesh, low, &cell, degrees, None, 2_000, &Silent).expect("valid")
+    let look = |place: &dyn Fn(DVec3) -> DVec3, degrees| {
+        let placed: Vec<DVec3> = mesh.positions().iter().map(|&p| place(p)).collect();
+        let low = mesh_of(placed, mesh.triangles());
+        angles(&mesh, &low, &cell, degrees, None, 2_000, &Silent).expect("valid")
     };
-    let held = look(&low, 1e-3);
+    // Pushed away along the lines of sight: nothing to see, whatever the distance.
+    let held = look(&|p| viewer + (p - viewer) * 1.25, 1e-3);
     assert!(held.holds && held.property == Property::NearestInAngle && held.pieces.is_none());
     // Moved aside: the outline is what shows.
-    let aside: Vec<DVec3> = mesh.positions().iter().map(|&p| p + DVec3::X).collect();
-    let low = Mesh::from_triangles(aside, mesh.triangles().to_vec()).expect("valid");
-    let report = look(&low, 0.5);
+    let report = look(&|p| p + DVec3::X, 0.5);
     let worst = report.worst.expect("sightings").angle_deg;
     assert!(!report.holds && (1.0..2.0).contains(&worst), "{worst}");
 }
@@ -164,8 +141,7 @@ proptest! {
         let n = [1, 2, 3, 6][usize::from(kind)];
         let viewpoints: Vec<DVec3> = (0..60).map(|_| {
             let weights: Vec<f64> = (0..n).map(|_| random.unit()).collect();
-            let sum: f64 = weights.iter().sum();
-            weights.iter().zip(&corners).map(|(w, c)| *c * (*w / sum)).sum()
+            mixture(&corners, &weights)
         }).collect();
         let seen = brute(&mesh, &low, &viewpoints);
         let report = check(&mesh, &low, &cell, 45.0);
@@ -200,11 +176,11 @@ fn viewpoints_on_and_in_the_mesh_are_judged_without_a_number_that_is_none() {
 #[test]
 fn a_cell_that_meets_what_was_moved_breaks_every_claim_however_small_the_step() {
     let triangle = |z: f64| {
-        let corners = [(-1.0, -1.0), (2.0, -0.5), (0.3, 1.5)];
-        let corners = corners.map(|(x, y)| DVec3::new(x, y, z));
-        Mesh::from_triangles(corners.to_vec(), vec![[0, 1, 2]]).expect("valid")
+        mesh_of(
+            [at(-1.0, -1.0, z), at(2.0, -0.5, z), at(0.3, 1.5, z)],
+            [[0, 1, 2]],
+        )
     };
-    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let flat = triangle(0.0);
     let all = [
         ViewCell::point(at(0.1, 0.2, 0.0)),
@@ -223,13 +199,10 @@ fn a_cell_that_meets_what_was_moved_breaks_every_claim_however_small_the_step() 
                 // Viewers on the original, and on what stands for it.
                 for [from, to] in [[&flat, &moved], [&moved, &flat]] {
                     let report = check(from, to, cell, 89.0);
-                    assert!(!report.holds, "{step}, cell {i}: {report:?}");
-                    assert!(
-                        report.worst.expect("sightings").angle_deg > 89.0
-                            && report.at_most_deg.is_none_or(|most| most > 89.0)
-                            && !report.proven,
-                        "{step}, cell {i}: {report:?}"
-                    );
+                    let seen = report.worst.expect("sightings").angle_deg > 89.0;
+                    let broken = seen && report.at_most_deg.is_none_or(|most| most > 89.0);
+                    let none = report.holds || report.proven;
+                    assert!(broken && !none, "{step}, cell {i}: {report:?}");
                 }
             }
         }
@@ -240,8 +213,7 @@ fn a_cell_that_meets_what_was_moved_breaks_every_claim_however_small_the_step() 
 fn the_number_of_threads_changes_no_bit() {
     let mesh = terrain();
     let low = moved(&mesh, 3, DVec3::new(0.1, 0.0, 0.05));
-    let cell = ViewCell::segment([DVec3::new(0.0, 0.0, 9.0), DVec3::new(6.0, 0.0, 9.0)])
-        .expect("a segment");
+    let cell = ViewCell::segment([at(0.0, 0.0, 9.0), at(6.0, 0.0, 9.0)]).expect("a segment");
     same_on_all_threads(|| check(&mesh, &low, &cell, 0.5));
 }
 
@@ -255,63 +227,46 @@ fn the_command_names_the_place_where_an_angle_is_too_large() {
     std::fs::write(dir.path().join("b.corr"), identity(&mesh, &low)).expect("writes");
     let cell = r#"{"schema": 1, "cell": {"segment": [[0, 0, 40], [6, 0, 40]]}}"#;
     std::fs::write(dir.path().join("cell.json"), cell).expect("writes");
-    let run = |degrees: &str, more: &[&str]| {
-        let words = [
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--cell",
-            "cell.json",
-            "--error-deg",
-            degrees,
-            "--samples",
-            "500",
-        ];
-        lodmark(&dir, &[&words, more].concat())
+    let run = |more: &str| {
+        let meshes = "verify ref.ply low.ply --cell cell.json --samples 500";
+        lodmark(&dir, &format!("{meshes} --error-deg {more}"))
     };
-    let broken = run("0.1", &["--bound", "b.corr", "--json", "r.json"]);
+    let broken = run("0.1 --bound b.corr --json r.json");
     assert_eq!(code(&broken), 1);
     assert!(stdout(&broken).contains("seen from"), "{}", stdout(&broken));
-    let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(json["property"], "correspondence");
-    assert_eq!(code(&run("2", &["--bound", "b.corr"])), 0);
-    assert_eq!(code(&run("2", &[])), 0);
-    expect(
-        &dir,
-        3,
-        "verify low.ply low.ply --cell cell.json --error-deg 1 --bound b.corr",
-    );
-    expect(
-        &dir,
-        3,
-        "verify ref.ply ref.ply --cell cell.json --error-deg 1 --bound b.corr",
-    );
-    expect(
-        &dir,
-        3,
-        "verify ref.ply low.ply --cell cell.json --error-deg 1 --bound ref.ply",
-    );
-    expect(&dir, 2, "verify ref.ply low.ply --error-deg 1");
-    expect(&dir, 2, "verify ref.ply low.ply --error 1 --cell cell.json");
-    expect(
-        &dir,
-        2,
-        "verify ref.ply low.ply --cell cell.json --error-deg 90",
-    );
+    assert_eq!(json(&dir, "r.json")["property"], "correspondence");
+    assert_eq!(code(&run("2 --bound b.corr")), 0);
+    assert_eq!(code(&run("2")), 0);
+    for (exit, claim) in [
+        (
+            3,
+            "low.ply low.ply --cell cell.json --error-deg 1 --bound b.corr",
+        ),
+        (
+            3,
+            "ref.ply ref.ply --cell cell.json --error-deg 1 --bound b.corr",
+        ),
+        (
+            3,
+            "ref.ply low.ply --cell cell.json --error-deg 1 --bound ref.ply",
+        ),
+        (2, "ref.ply low.ply --error-deg 1"),
+        (2, "ref.ply low.ply --error 1 --cell cell.json"),
+        (2, "ref.ply low.ply --cell cell.json --error-deg 90"),
+    ] {
+        expect(&dir, exit, &format!("verify {claim}"));
+    }
 }
 
 #[test]
 fn a_face_without_area_is_proven_by_having_none() {
     // The second triangle lies on a line, and viewers stand between it and what stands for it.
-    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let corners = |by: f64| {
-        let line = [0.0, 1.0, 2.0].map(|x| p(x + by * (1.0 + 0.37 * x), 0.0, 0.0));
-        let face = [p(0.0, 0.0, 3.0), p(1.0, 0.0, 3.0), p(0.0, 1.0, 3.0)];
-        [face, line].concat()
+    let mesh = |by: f64| {
+        let line = [0.0, 1.0, 2.0].map(|x| at(x + by * (1.0 + 0.37 * x), 0.0, 0.0));
+        let face = [at(0.0, 0.0, 3.0), at(1.0, 0.0, 3.0), at(0.0, 1.0, 3.0)];
+        mesh_of([face, line].concat(), [[0, 1, 2], [3, 4, 5]])
     };
-    let mesh = |by| Mesh::from_triangles(corners(by), vec![[0, 1, 2], [3, 4, 5]]).expect("valid");
-    let cell = ViewCell::segment([p(0.2, 0.0, 0.0), p(1.7, 0.0, 0.0)]).expect("a cell");
+    let cell = ViewCell::segment([at(0.2, 0.0, 0.0), at(1.7, 0.0, 0.0)]).expect("a cell");
     let found = check(&mesh(0.0), &mesh(1e-9), &cell, 1.0);
     assert!(!found.proven, "{found:?}");
     assert!(check(&mesh(0.0), &mesh(0.0), &cell, 0.0).proven);
@@ -319,25 +274,23 @@ fn a_face_without_area_is_proven_by_having_none() {
 
 #[test]
 fn a_mesh_whose_squares_are_no_numbers_is_held_to_a_claim() {
-    let mut parts = meshes::torus(6, 5, 1).into_parts();
-    parts.precision = Precision::F64;
-    let near = Mesh::new(parts).expect("valid");
     let moved = |by: DVec3| {
-        let mut parts = near.clone().into_parts();
+        let mut parts = meshes::torus(6, 5, 1).into_parts();
+        parts.precision = Precision::F64;
         parts.positions[3] += by;
         Mesh::new(parts).expect("valid")
     };
+    let near = moved(DVec3::ZERO);
     let cell = ViewCell::point(DVec3::new(0.0, 0.0, 9.0)).expect("a cell");
     for far in [1e61, 1e160, 1e300] {
         let low = moved(DVec3::splat(far));
         let record = read(&identity(&near, &low));
-        for record in [Some(&record), None] {
-            let refused = angles(&near, &low, &cell, 1.0, record, 100, &Silent);
+        let there = ViewCell::point(DVec3::splat(far)).expect("a cell");
+        let of_cell = (&near, &there, None);
+        for (low, cell, record) in [(&low, &cell, Some(&record)), (&low, &cell, None), of_cell] {
+            let refused = angles(&near, low, cell, 1.0, record, 100, &Silent);
             assert_eq!(refused.expect_err("too far").exit_code(), 3);
         }
-        let there = ViewCell::point(DVec3::splat(far)).expect("a cell");
-        let refused = angles(&near, &near, &there, 1.0, None, 100, &Silent);
-        assert_eq!(refused.expect_err("too far").exit_code(), 3);
     }
     let low = moved(DVec3::splat(1e50));
     let found = check(&near, &low, &cell, 1.0);

@@ -14,7 +14,7 @@ use lodmark::{
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::angle::{identity, read};
+use super::{identity, read};
 use crate::support::{bounded, moved};
 
 /// Bytes before the first piece; the last eight count the pieces.
@@ -139,10 +139,6 @@ fn a_damaged_file_says_what_is_wrong_with_it() {
         assert!(said.contains("outside its triangle"), "{said}");
     }
     assert!(with(&[(1, 4)]).contains("goes to triangle 4"));
-    let longer = [&words[..], &[7]].concat();
-    assert!(
-        refused(&file(&whole, &longer))
-            .to_string()
-            .contains("pieces")
-    );
+    let longer = refused(&file(&whole, &[&words[..], &[7]].concat()));
+    assert!(longer.to_string().contains("pieces"));
 }
