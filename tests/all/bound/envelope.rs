@@ -7,7 +7,7 @@ use lodmark::bound::envelope::{
 
 use crate::{
     bound::tolerance_volume::cases,
-    support::{Random, distance, distance_to_all, lattice, meshes},
+    support::{Random, at, distance, distance_to_all, faces, lattice, meshes},
 };
 
 fn triangle(random: &mut Random, size: f64) -> [DVec3; 3] {
@@ -35,11 +35,8 @@ fn the_distance_to_a_triangle_is_that_to_its_nearest_point_and_never_shorter() {
         }
         let p = random.vector(2.0);
         let found = lodmark::num::math::sqrt(Facet::new(corners).distance2(p));
-        let expected = distance(p, corners);
-        assert!(
-            (found - expected).abs() <= 1e-8,
-            "{p} {corners:?}: {found} for {expected}"
-        );
+        let off = (found - distance(p, corners)).abs();
+        assert!(off <= 1e-8, "{p} {corners:?}: {found} is {off} off");
     }
 }
 
@@ -49,35 +46,19 @@ fn a_triangle_that_is_held_is_within_reach_and_one_well_within_reach_is_held() {
     let (mut held, mut refused) = (0, 0);
     for _ in 0..cases() {
         // A wavy sheet, so that neighbours share edges, and strays.
-        let mesh = meshes::grid(3, random.next());
-        let original: Vec<[DVec3; 3]> = (0..mesh.triangles().len())
-            .map(|t| mesh.corners(t))
-            .collect();
+        let original = faces(&meshes::grid(3, random.next()));
         let surface = OriginalSurface::new(original.iter().copied());
-        let new = [0; 3].map(|_| {
-            DVec3::new(
-                3.0 * random.unit(),
-                3.0 * random.unit(),
-                0.6 * random.unit(),
-            )
-        });
+        let mut unit = || random.unit();
+        let new = [0; 3].map(|_| at(3.0 * unit(), 3.0 * unit(), 0.6 * unit()));
         let most = farthest(new, &original);
         let share = 0.5 + random.unit();
         let reach = Reach::new(most * share, 3.0).expect("large enough");
         let yes = surface.holds([new].into_iter(), reach, &mut PieceQueue::default());
         if share < 1.0 {
-            assert!(
-                !yes,
-                "a point is at {most}, and {} was certified",
-                most * share
-            );
+            assert!(!yes, "a point is at {most}, and {share} of it certified");
             refused += 1;
         } else if share > 1.15 {
-            assert!(
-                yes,
-                "the farthest of all samples is at {most}, bound {}",
-                most * share
-            );
+            assert!(yes, "all samples are within {most}, of the bound {share}");
             held += 1;
         }
     }
@@ -90,9 +71,7 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
     let (mut yes, mut no) = (0, 0);
     for _ in 0..cases() / 4 {
         let mesh = meshes::grid(3, random.next());
-        let original: Vec<[DVec3; 3]> = (0..mesh.triangles().len())
-            .map(|t| mesh.corners(t))
-            .collect();
+        let original = faces(&mesh);
         let mut live: Vec<Option<[DVec3; 3]>> = original.iter().map(|&t| Some(t)).collect();
         let mut coverage = Coverage::new(mesh.positions(), mesh.triangles());
         let reach = Reach::new(0.1 + 0.5 * random.unit(), 3.0).expect("large enough");
@@ -100,20 +79,17 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
         for _ in 0..12 {
             // Some neighbours go; all but one of them come back, bent.
             let first = random.below(live.len());
-            let ids: Vec<u32> = (first..(first + 4).min(live.len()))
-                .filter(|&t| live[t].is_some())
-                .map(|t| t as u32)
-                .collect();
+            let four = first..(first + 4).min(live.len());
+            let ids = four.filter(|&t| live[t].is_some()).map(|t| t as u32);
+            let ids: Vec<u32> = ids.collect();
             if ids.len() < 2 {
                 continue;
             }
             let size = 0.6 * reach.length * random.unit();
             let kept = &ids[usize::from(random.below(3) == 0)..];
-            let fan: Vec<[DVec3; 3]> = kept
-                .iter()
-                .filter_map(|&t| live[t as usize])
-                .map(|corners| corners.map(|p| p + random.vector(size)))
-                .collect();
+            let corners = kept.iter().filter_map(|&t| live[t as usize]);
+            let bent = corners.map(|corners| corners.map(|p| p + random.vector(size)));
+            let fan: Vec<[DVec3; 3]> = bent.collect();
             coverage.gather(&ids, |t| live[t as usize], reach, &mut trial);
             let covers = trial.covers(fan.iter().copied(), reach);
             let assigned = trial.assign(&ids, kept, fan.iter().copied(), reach, &mut change);
@@ -129,11 +105,7 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
             let most = original.iter().map(|&t| farthest(t, &all));
             let most = most.fold(0.0, f64::max);
             if covers {
-                assert!(
-                    most <= reach.length * (1.0 + 1e-9),
-                    "{most} for {}",
-                    reach.length
-                );
+                assert!(most <= reach.length * (1.0 + 1e-9), "{most}, {reach:?}");
                 coverage.apply(&change);
                 live = after;
                 yes += 1;
@@ -142,11 +114,8 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
                 no += 1;
             }
             for t in 0..original.len() as u32 {
-                let witnesses: Vec<[DVec3; 3]> = coverage
-                    .witnesses(t)
-                    .iter()
-                    .map(|&w| live[w as usize].expect("a witness is alive"))
-                    .collect();
+                let alive = |&w: &u32| live[w as usize].expect("a witness is alive");
+                let witnesses: Vec<_> = coverage.witnesses(t).iter().map(alive).collect();
                 let most = farthest(original[t as usize], &witnesses);
                 assert!(most <= reach.length * (1.0 + 1e-9), "triangle {t}: {most}");
             }
@@ -157,11 +126,9 @@ fn coverage_after_changes_is_true_of_every_point_and_refuses_only_near_the_bound
 
 #[test]
 fn a_bound_that_rounding_would_swallow_is_no_bound() {
-    assert_eq!(Reach::new(0.0, 1.0), None);
-    assert_eq!(Reach::new(-1.0, 1.0), None);
-    assert_eq!(Reach::new(f64::NAN, 1.0), None);
-    assert_eq!(Reach::new(f64::INFINITY, 1.0), None);
-    assert_eq!(Reach::new(1e-15, 1.0), None);
+    for length in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-15] {
+        assert_eq!(Reach::new(length, 1.0), None);
+    }
     assert_eq!(Reach::new(1e-9, 1e9), None);
     let reach = Reach::new(1e-9, 1.0).expect("large enough");
     assert!(reach.length < 1e-9 && reach.length > 0.99e-9);

@@ -12,7 +12,6 @@ use lodmark::{
     bound::{
         heuristics,
         nearest_triangle::{NearestTriangle, originals},
-        planar::Aperture,
         region::profile,
         surface::{Effort, Given, Measure, Pair, SurfaceBound, measure},
         switch_distance::{aperture_of_pixels, safe_view_distance, switch_distance},
@@ -22,22 +21,12 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{at, bounded};
-
-fn aperture(radians: f64) -> Aperture {
-    Aperture::radians(radians).expect("in range")
-}
+use crate::support::{angle_between, aperture, at, bounded, mesh_of};
 
 fn bound(reference: &Mesh, low: &Mesh, what: Measure<'_>) -> SurfaceBound {
     let nearest = NearestTriangle::new(low).expect("not empty");
     let pairs = originals(reference);
     measure(pairs, &nearest, what, Effort::default(), &Silent).expect("nobody interrupts")
-}
-
-/// The angle at `v`, by its own formula (Kahan).
-fn angle_between(v: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let (a, b) = ((a - v).normalize(), (b - v).normalize());
-    2.0 * libm::atan2((a - b).length(), (a + b).length())
 }
 
 #[test]
@@ -69,16 +58,15 @@ fn the_safe_distance_is_the_published_one() {
 #[test]
 fn a_pixel_is_the_angle_that_it_takes_in_the_middle_of_the_screen() {
     let view = PI / 3.0;
-    let one = aperture_of_pixels(1.0, 1080, view)
-        .expect("sensible")
-        .angle();
-    let small = 2.0 * libm::tan(0.5 * view) / 1080.0;
+    let angle = |pixels| {
+        aperture_of_pixels(pixels, 1080, view)
+            .expect("sensible")
+            .angle()
+    };
+    let (one, small) = (angle(1.0), 2.0 * libm::tan(0.5 * view) / 1080.0);
     assert!((one - small).abs() < 1e-6 * small, "{one} and {small}");
     // As many pixels as the screen has take the whole field of view.
-    let all = aperture_of_pixels(1080.0, 1080, view)
-        .expect("sensible")
-        .angle();
-    assert!((all - view).abs() < 1e-12);
+    assert!((angle(1080.0) - view).abs() < 1e-12);
     for (pixels, height, view) in [
         (-1.0, 1080, 1.0),
         (f64::NAN, 1080, 1.0),
@@ -87,25 +75,16 @@ fn a_pixel_is_the_angle_that_it_takes_in_the_middle_of_the_screen() {
         (1.0, 1080, 0.0),
         (2000.0, 1080, 1.5),
     ] {
-        assert_eq!(
-            aperture_of_pixels(pixels, height, view)
-                .expect_err("senseless")
-                .exit_code(),
-            2
-        );
+        let refused = aperture_of_pixels(pixels, height, view);
+        assert_eq!(refused.expect_err("senseless").exit_code(), 2);
     }
 }
 
 /// A band of two triangles between two points of the plane z = 0, so high.
 fn band(from: [f64; 2], to: [f64; 2], height: f64) -> Mesh {
-    let corner = |[x, y]: [f64; 2], z| at(x, y, z);
-    let positions = vec![
-        corner(from, 0.0),
-        corner(to, 0.0),
-        corner(to, height),
-        corner(from, height),
-    ];
-    Mesh::from_triangles(positions, vec![[0, 1, 2], [0, 2, 3]]).expect("valid")
+    let corners = [(from, 0.0), (to, 0.0), (to, height), (from, height)];
+    let positions = corners.map(|([x, y], z)| at(x, y, z));
+    mesh_of(positions, [[0, 1, 2], [0, 2, 3]])
 }
 
 #[test]
@@ -123,10 +102,8 @@ fn edges_that_are_far_away_say_nothing_about_a_band_that_passes_close_by() {
         assert!((claims.vertices - edge).abs() < 1e-6, "{claims:?}");
         assert!((claims.edges - edge).abs() < 1e-6, "{claims:?}");
         let exact = libm::atan2(0.1, closeness);
-        assert!(
-            found.bound >= exact * 0.999_999 && found.bound <= exact * 1.011,
-            "{found:?} for {exact}"
-        );
+        let range = exact * 0.999_999..=exact * 1.011;
+        assert!(range.contains(&found.bound), "{found:?} for {exact}");
         assert!(found.bound / claims.vertices.max(claims.edges) > last);
         last = found.bound / claims.edges;
     }
@@ -140,36 +117,23 @@ fn a_face_whose_vertices_are_valid_leaves_its_validity_regions_inside() {
     let eye = DVec3::ZERO;
     let cell = ViewCell::point(eye).expect("a point");
     let (m, n) = (at(-3.0, 1.0, 0.0), at(3.0, 1.0, 0.0));
-    let pair = |shift: DVec3| Pair {
-        from: [m, n, n],
-        to: [2.0 * m, n + shift, n + shift],
-        triangle: 0,
-    };
-    let unseen = pair(DVec3::ZERO);
-    for (p, s) in unseen.from.into_iter().zip(unseen.to) {
-        assert!(
-            angle_between(eye, p, s) < 1e-9,
-            "no test of vertices sees it"
-        );
+    let (from, to) = ([m, n, n], [2.0 * m, n, n]);
+    for (p, s) in from.into_iter().zip(to) {
+        let seen = angle_between(eye, p, s);
+        assert!(seen < 1e-9, "no test of vertices sees it");
     }
-    let found = measure(
-        vec![unseen],
-        &Given,
-        Measure::Angle(&cell),
-        Effort::default(),
-        &Silent,
-    )
-    .expect("nobody interrupts");
+    let triangle = 0;
+    let pairs = vec![Pair { from, to, triangle }];
+    let (angle, effort) = (Measure::Angle(&cell), Effort::default());
+    let found = measure(pairs, &Given, angle, effort, &Silent).expect("nobody interrupts");
     let mut seen = 0.0_f64;
     for i in 0..=1_000 {
         let x = f64::from(i) / 1_000.0;
         seen = seen.max(angle_between(eye, m.lerp(n, x), (2.0 * m).lerp(n, x)));
     }
     assert!(seen > 0.5, "{seen}");
-    assert!(
-        found.bound >= seen && found.bound <= 1.011 * seen,
-        "{found:?} and {seen}"
-    );
+    let range = seen..=1.011 * seen;
+    assert!(range.contains(&found.bound), "{found:?} and {seen}");
 }
 
 #[test]
@@ -193,18 +157,16 @@ fn a_cell_that_cuts_a_displaced_surface_has_no_bound_below_half_a_turn() {
     ] {
         let cell = cell.expect("a cell");
         let found = bound(&mesh, &moved, Measure::Angle(&cell));
-        assert!(
-            found.bound >= PI * 0.999_999 && found.bound <= PI,
-            "{cell:?}: {found:?}"
-        );
+        let range = PI * 0.999_999..=PI;
+        assert!(range.contains(&found.bound), "{cell:?}: {found:?}");
     }
 }
 
 #[test]
 fn a_point_cloud_has_the_exact_error_of_its_points() {
     let points = |shift: f64| {
-        let positions = (0..5).map(|i| at(f64::from(i), 5.0 + shift, 0.0)).collect();
-        Mesh::from_triangles(positions, Vec::new()).expect("valid")
+        let positions = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| at(x, 5.0 + shift, 0.0));
+        mesh_of(positions, [])
     };
     let cell = ViewCell::segment([at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0)]).expect("a segment");
     let found = bound(&points(0.0), &points(0.25), Measure::Angle(&cell));
@@ -215,10 +177,8 @@ fn a_point_cloud_has_the_exact_error_of_its_points() {
             seen = seen.max(angle_between(at(f64::from(k) / 1_000.0, 0.0, 0.0), p, s));
         }
     }
-    assert!(
-        found.bound >= seen && found.bound < seen * (1.0 + 1e-6),
-        "{found:?} and {seen}"
-    );
+    let range = seen..seen * (1.0 + 1e-6);
+    assert!(range.contains(&found.bound), "{found:?} and {seen}");
 }
 
 #[test]
@@ -233,15 +193,9 @@ fn needles_and_edges_of_three_faces_have_a_bound() {
             at(0.5, 0.0, 1.0),
             at(3.0, 0.0, 0.0),
         ];
-        let triangles = vec![
-            [0, 1, 2],
-            [1, 0, 3],
-            [0, 1, 4],
-            [0, 1, 5],
-            [5, 5, 5],
-            [2, 2, 3],
-        ];
-        Mesh::from_triangles(positions.map(|p| p + shift).to_vec(), triangles).expect("indices")
+        let around = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
+        let odd = [[0, 1, 5], [5, 5, 5], [2, 2, 3]];
+        mesh_of(positions.map(|p| p + shift), [around, odd].concat())
     };
     let (reference, low) = (mesh(DVec3::ZERO), mesh(at(0.0, 0.0, 0.01)));
     let cell = ViewCell::segment([at(-1.0, 0.0, 6.0), at(2.0, 0.0, 6.0)]).expect("a segment");
@@ -252,10 +206,8 @@ fn needles_and_edges_of_three_faces_have_a_bound() {
     let seen = angle_between(at(-1.0, 0.0, 6.0), p, s);
     assert!(found.bound > seen / 4.0, "{found:?} and {seen}");
     let distance = bound(&reference, &low, Measure::Distance);
-    assert!(
-        distance.bound <= 0.0101 && distance.bound > 0.005,
-        "{distance:?}"
-    );
+    let range = 0.005..=0.0101;
+    assert!(range.contains(&distance.bound), "{distance:?}");
 }
 
 #[test]
@@ -264,12 +216,8 @@ fn a_region_is_cut_off_at_twice_its_bounded_part() {
     let found = profile(&cell, DVec3::ZERO, DVec3::X, aperture(0.1), 360, None).expect("a figure");
     let bounded = found.outline.iter().map(|p| p.length());
     let bounded = bounded.filter(|&t| t < found.reach * (1.0 - 1e-9));
-    let largest = bounded.fold(0.0, f64::max);
-    assert!(
-        (found.reach / largest - 2.0).abs() < 1e-9,
-        "{} {largest}",
-        found.reach
-    );
+    let ratio = found.reach / bounded.fold(0.0, f64::max);
+    assert!((ratio - 2.0).abs() < 1e-9, "{ratio}");
 }
 
 fn point() -> impl Strategy<Value = DVec3> {

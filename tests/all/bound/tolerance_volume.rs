@@ -5,11 +5,14 @@
 mod deviation;
 
 use glam::DVec3;
-use lodmark::bound::tolerance::{
-    HalfSpace, Neighborhood, OldFace, Polyhedron, Prism, Quadratic, Source, Volume, shadows,
+use lodmark::{
+    bound::tolerance::{
+        HalfSpace, Neighborhood, OldFace, Polyhedron, Prism, Quadratic, Source, Volume, shadows,
+    },
+    geometry::Sym3,
 };
 
-use crate::support::Random;
+use crate::support::{Random, at, rows};
 
 pub(crate) fn cases() -> u64 {
     crate::support::bound_cases(1_000)
@@ -28,35 +31,35 @@ fn ring_of(random: &mut Random, bump: f64, spread: f64, slope: f64) -> ([DVec3; 
         let angle = (k as f64 + 0.5 * random.unit()) / n as f64 * std::f64::consts::TAU;
         let radius = 1.0 + spread * random.unit();
         let height = (random.unit() - 0.5) * bump - slope * radius;
-        link.push(DVec3::new(
-            1.4 * radius * libm::cos(angle),
-            radius * libm::sin(angle),
-            height,
-        ));
+        let (x, y) = (libm::cos(angle), libm::sin(angle));
+        link.push(at(1.4 * radius * x, radius * y, height));
     }
-    let mut end = |x: f64| DVec3::new(x, 0.0, 0.0) + random.vector(0.25 * bump);
+    let mut end = |x: f64| DVec3::X * x + random.vector(0.25 * bump);
     let (u, w) = (end(-0.35), end(0.35));
-    let mut faces = Vec::new();
     // The vertices of the link near the top and the bottom see both ends.
-    let top = n / 4;
-    let bottom = 3 * n / 4;
-    for k in 0..n {
-        let (p, q) = (link[k], link[(k + 1) % n]);
+    let (top, bottom) = (n / 4, 3 * n / 4);
+    let outer = |k: usize| {
         let at_u = k >= top && k < bottom;
-        faces.push(OldFace {
-            points: [if at_u { u } else { w }, p, q],
-            ends: [true, false, false],
-        });
-    }
-    faces.push(OldFace {
-        points: [w, link[top], u],
-        ends: [true, false, true],
-    });
-    faces.push(OldFace {
-        points: [u, link[bottom], w],
-        ends: [true, false, true],
-    });
-    ([u, w], faces)
+        outer([if at_u { u } else { w }, link[k], link[(k + 1) % n]])
+    };
+    let inner = [[w, link[top], u], [u, link[bottom], w]].map(inner);
+    ([u, w], (0..n).map(outer).chain(inner).collect())
+}
+
+/// A face at one end of the edge, its first corner.
+fn outer(points: [DVec3; 3]) -> OldFace {
+    let ends = [true, false, false];
+    OldFace { points, ends }
+}
+
+/// A face at both ends, its first corner and its last.
+fn inner(points: [DVec3; 3]) -> OldFace {
+    let ends = [true, false, true];
+    OldFace { points, ends }
+}
+
+fn is_outer(face: &&OldFace) -> bool {
+    face.ends == [true, false, false]
 }
 
 fn neighborhood(faces: &[OldFace]) -> Option<Neighborhood> {
@@ -67,10 +70,8 @@ fn neighborhood(faces: &[OldFace]) -> Option<Neighborhood> {
 fn coordinates([a, b, c]: [DVec3; 3], v: DVec3) -> ([f64; 3], f64) {
     let n = (b - a).cross(c - a);
     let area = |p: DVec3, q: DVec3| (p - v).cross(q - v).dot(n) / n.dot(n);
-    (
-        [area(b, c), area(c, a), area(a, b)],
-        (v - a).dot(n) / n.length(),
-    )
+    let height = (v - a).dot(n) / n.length();
+    ([area(b, c), area(c, a), area(a, b)], height)
 }
 
 fn height_limit(v: [f64; 3], bound: f64) -> f64 {
@@ -83,64 +84,29 @@ fn in_shadow(v: DVec3, shadow: &[HalfSpace], margin: f64) -> bool {
 
 #[test]
 fn the_height_limit_of_a_boundary_triangle_is_that_of_the_vectors() {
-    let base = [
-        DVec3::ZERO,
-        DVec3::new(1.0, 0.1, 0.0),
-        DVec3::new(0.4, 0.9, 0.0),
-    ];
+    let base = [DVec3::ZERO, at(1.0, 0.1, 0.0), at(0.4, 0.9, 0.0)];
     let prism = Prism::new(base).expect("no needle");
     let bound = 0.1;
-    for (v, limit, highest, legal) in [
-        ([0.45, 0.4, 0.09], 0.1, 0.09, true),
-        ([0.45, 0.4, 0.11], 0.1, 0.11, false),
-        (
-            [0.4, 1.5, 0.15],
-            0.169_767_441_860_465_1,
-            0.088_356_164_383_561_64,
-            true,
-        ),
-        (
-            [0.4, 1.5, 0.2],
-            0.169_767_441_860_465_1,
-            0.117_808_219_178_082_21,
-            false,
-        ),
-        (
-            [2.0, 0.6, 0.15],
-            0.227_906_976_744_186_06,
-            0.065_816_326_530_612_24,
-            true,
-        ),
-        (
-            [2.0, 0.6, 0.3],
-            0.227_906_976_744_186_06,
-            0.131_632_653_061_224_49,
-            false,
-        ),
-        (
-            [-0.8, 0.7, 0.15],
-            0.216_279_069_767_441_9,
-            0.069_354_838_709_677_42,
-            true,
-        ),
-        (
-            [-0.8, 0.7, 0.25],
-            0.216_279_069_767_441_9,
-            0.115_591_397_849_462_36,
-            false,
-        ),
-    ] {
-        let v = DVec3::from_array(v);
-        let (barycentric, _) = coordinates(base, v);
-        assert!(
-            (height_limit(barycentric, bound) - limit).abs() < 1e-12,
-            "{v}"
-        );
+    // A position, its limit, and the largest height: legal, and not, for every limit.
+    for [x, y, z, limit, highest] in rows(
+        " 0.45 0.4 0.09  0.1                  0.09
+          0.45 0.4 0.11  0.1                  0.11
+          0.4  1.5 0.15  0.1697674418604651   0.08835616438356164
+          0.4  1.5 0.2   0.1697674418604651   0.11780821917808221
+          2    0.6 0.15  0.22790697674418606  0.06581632653061224
+          2    0.6 0.3   0.22790697674418606  0.13163265306122449
+         -0.8  0.7 0.15  0.2162790697674419   0.06935483870967742
+         -0.8  0.7 0.25  0.2162790697674419   0.11559139784946236",
+    ) {
+        let v = at(x, y, z);
+        let (barycentric, height) = coordinates(base, v);
+        let off = (height_limit(barycentric, bound) - limit).abs();
+        assert!(off < 1e-12, "{v}");
         let found = prism.largest_height([v, base[0], base[1]]);
         assert!((found - highest).abs() < 1e-12, "{v}: {found}");
         let shadow = shadows(prism.cap(bound), prism.normal, [base[0], base[1]], 1e-12);
         assert_eq!(shadow.len(), 1);
-        assert_eq!(in_shadow(v, &shadow[0], 0.0), !legal, "{v}");
+        assert_eq!(in_shadow(v, &shadow[0], 0.0), height > limit, "{v}");
     }
 }
 
@@ -156,29 +122,26 @@ fn the_shadow_of_a_cap_from_its_own_edge_is_what_the_height_limit_says() {
         };
         let [p, q, c] = base;
         let inner = p + (q - p) * random.unit() + (c - p) * (3.0 * random.unit());
-        let v =
-            inner + prism.normal * (4.0 * bound * (random.unit() - 0.3)) + (q - p) * random.unit();
+        let rise = prism.normal * (4.0 * bound * (random.unit() - 0.3));
+        let v = inner + rise + (q - p) * random.unit();
         let (barycentric, height) = coordinates(base, v);
         let limit = height_limit(barycentric, bound);
         if barycentric[2] < 1e-3 || (height - limit).abs() < 1e-6 * limit.max(1.0) {
             continue;
         }
         let shadow = shadows(prism.cap(bound), prism.normal, [p, q], 1e-12);
-        assert_eq!(
-            in_shadow(v, &shadow[0], 0.0),
-            height > limit,
-            "{base:?} {v}"
-        );
-        *(if height > limit {
-            &mut illegal
-        } else {
-            &mut legal
-        }) += 1;
+        let dark = in_shadow(v, &shadow[0], 0.0);
+        assert_eq!(dark, height > limit, "{base:?} {v}");
+        illegal += u64::from(dark);
+        legal += u64::from(!dark);
     }
-    assert!(
-        legal > cases() / 10 && illegal > cases() / 10,
-        "{legal} {illegal}"
-    );
+    assert_both(legal, illegal, 10);
+}
+
+/// Holds both outcomes to a part of the cases at least.
+fn assert_both(one: u64, other: u64, part: u64) {
+    let enough = one.min(other) > cases() / part;
+    assert!(enough, "{one} {other}");
 }
 
 /// How far the segment from `a` to `v` passes inside the cap where it pierces it: the least barycentric coordinate;
@@ -228,37 +191,24 @@ fn a_position_is_in_the_shadow_of_a_cap_where_a_face_would_pierce_it() {
         let v = from + (through - from) * (2.0 * random.unit());
         let depth = deepest(cap, source, v);
         let all = shadows(cap, prism.normal, source, 1e-12);
+        let is_dark = |margin| all.iter().any(|s| in_shadow(v, s, margin));
         if depth > 1e-6 {
-            assert!(
-                all.iter().any(|s| in_shadow(v, s, 1e-9)),
-                "{cap:?} {source:?} {v}"
-            );
+            assert!(is_dark(1e-9), "{cap:?} {source:?} {v}");
             dark += 1;
         } else if depth < -1e-3 {
-            assert!(
-                !all.iter().any(|s| in_shadow(v, s, -1e-3)),
-                "{cap:?} {source:?} {v}"
-            );
+            assert!(!is_dark(-1e-3), "{cap:?} {source:?} {v}");
             light += 1;
         }
     }
-    assert!(
-        dark > cases() / 10 && light > cases() / 10,
-        "{dark} {light}"
-    );
+    assert_both(dark, light, 10);
 }
 
 /// What a volume promises of a position: in the kernel, in a prism, and no face pierces a cap deeper than `depth`.
 fn allowed(faces: &[OldFace], bound: f64, v: DVec3, margin: f64, depth: f64) -> bool {
     let behind = |p: DVec3, q: DVec3, n: DVec3| (v - p).dot(n.cross(q - p).normalize()) >= -margin;
     let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize();
-    let links: Vec<[DVec3; 2]> = faces
-        .iter()
-        .filter(|f| f.ends == [true, false, false])
-        .map(|f| [f.points[1], f.points[2]])
-        .collect();
-    let kernel = faces.iter().filter(|f| f.ends == [true, false, false]);
-    let in_kernel = { kernel }.all(|f| behind(f.points[1], f.points[2], normal(f.points)));
+    let outer: Vec<[DVec3; 3]> = faces.iter().filter(is_outer).map(|f| f.points).collect();
+    let in_kernel = { outer.iter() }.all(|&[a, b, c]| behind(b, c, normal([a, b, c])));
     let in_prism = |f: &OldFace| {
         let n = normal(f.points);
         (v - f.points[0]).dot(n).abs() <= bound + margin
@@ -268,8 +218,9 @@ fn allowed(faces: &[OldFace], bound: f64, v: DVec3, margin: f64, depth: f64) -> 
         let n = normal(f.points);
         [bound, -bound].map(|h| f.points.map(|p| p + n * h))
     });
-    in_kernel && faces.iter().any(in_prism) && { caps }
-        .all(|cap| links.iter().all(|&link| deepest(cap, link, v) <= depth))
+    let mut shallow =
+        caps.map(|cap| { outer.iter() }.all(|&[_, p, q]| deepest(cap, [p, q], v) <= depth));
+    in_kernel && faces.iter().any(in_prism) && shallow.all(|all| all)
 }
 
 #[test]
@@ -286,28 +237,25 @@ fn a_volume_holds_the_positions_that_are_allowed_and_no_others() {
             continue;
         }
         for _ in 0..10 {
-            let face = &faces[random.below(faces.len())];
-            let (s, t) = (random.unit(), random.unit());
-            let on =
-                face.points[0] * (1.0 - s) + (face.points[1] * t + face.points[2] * (1.0 - t)) * s;
+            let on = drawn(faces[random.below(faces.len())].points, &mut random);
             let v = on + random.vector(bound);
-            let holds = volume.contains(v);
-            if holds {
-                assert!(allowed(&faces, bound, v, 1e-7, 1e-6), "{bump} {bound} {v}");
+            let allowed = |margin, depth| allowed(&faces, bound, v, margin, depth);
+            if volume.contains(v) {
+                assert!(allowed(1e-7, 1e-6), "{bump} {bound} {v}");
                 inside += 1;
             } else {
-                assert!(
-                    !allowed(&faces, bound, v, -1e-4, -1e-3),
-                    "{bump} {bound} {v}"
-                );
+                assert!(!allowed(-1e-4, -1e-3), "{bump} {bound} {v}");
                 outside += 1;
             }
         }
     }
-    assert!(
-        inside > cases() / 20 && outside > cases() / 20,
-        "{inside} {outside}"
-    );
+    assert_both(inside, outside, 20);
+}
+
+/// A point of a triangle.
+fn drawn([a, b, c]: [DVec3; 3], random: &mut Random) -> DVec3 {
+    let (s, t) = (random.unit(), random.unit());
+    a * (1.0 - s) + (b * t + c * (1.0 - t)) * s
 }
 
 /// In the plane the kernel of a star is far from all of it, and no shadow falls: only the kernel forbids its tips.
@@ -327,23 +275,16 @@ fn a_position_beyond_a_side_of_the_link_is_in_no_volume() {
         let bound = 0.1;
         let around = neighborhood(&faces).expect("no needles");
         let volume = Volume::new(&around, bound, Source::Edges, 1e-9);
-        let outer: Vec<[DVec3; 3]> = { faces.iter() }
-            .filter(|f| f.ends == [true, false, false])
-            .map(|f| f.points)
-            .collect();
+        let outer: Vec<[DVec3; 3]> = faces.iter().filter(is_outer).map(|f| f.points).collect();
         for _ in 0..20 {
-            let [a, b, c] = faces[random.below(faces.len())].points;
-            let (s, t) = (random.unit(), random.unit());
-            let v = a * (1.0 - s) + (b * t + c * (1.0 - t)) * s;
+            let v = drawn(faces[random.below(faces.len())].points, &mut random);
             // Seen from a side that is turned, `v` and the end of the edge lie across from each other.
             let depth = |[end, p, q]: [DVec3; 3]| {
                 let wall = (end - p) - (q - p) * ((end - p).dot(q - p) / (q - p).length_squared());
                 (v - p).dot(wall.normalize())
             };
-            let least = outer
-                .iter()
-                .map(|&f| depth(f))
-                .fold(f64::INFINITY, f64::min);
+            let depths = outer.iter().map(|&f| depth(f));
+            let least = depths.fold(f64::INFINITY, f64::min);
             if least < -1e-6 {
                 assert!(!volume.contains(v), "{v} lies {least} beyond a side");
                 beyond += 1;
@@ -352,10 +293,8 @@ fn a_position_beyond_a_side_of_the_link_is_in_no_volume() {
             }
         }
     }
-    assert!(
-        beyond > cases() / 4 && inside > cases() / 10,
-        "{beyond} {inside}"
-    );
+    let enough = beyond > cases() / 4 && inside > cases() / 10;
+    assert!(enough, "{beyond} {inside}");
 }
 
 #[test]
@@ -389,38 +328,28 @@ fn no_place_in_a_volume_is_cheaper_than_its_minimum() {
         let around = neighborhood(&faces).expect("no needles");
         let volume = Volume::new(&around, 0.1 + 0.2 * random.unit(), Source::Edges, 1e-9);
         let mut of = Quadratic::default();
-        let rank = 1 + random.below(3);
-        for _ in 0..rank {
+        let mut squares = Vec::new();
+        for _ in 0..1 + random.below(3) {
             let (n, d) = (random.vector(1.0), random.unit());
-            let m = [
-                n.x * n.x,
-                n.x * n.y,
-                n.x * n.z,
-                n.y * n.y,
-                n.y * n.z,
-                n.z * n.z,
-            ];
-            of.matrix.0.iter_mut().zip(m).for_each(|(x, y)| *x += y);
+            of.matrix.add(&Sym3::outer(n));
             of.linear -= n * d;
+            squares.push((n, d));
         }
+        // Without its constant: half the squares of the distances from the planes.
         let value = |v: DVec3| {
-            let [a, b, c, d, e, f] = of.matrix.0;
-            let h = DVec3::new(
-                a * v.x + b * v.y + c * v.z,
-                b * v.x + d * v.y + e * v.z,
-                c * v.x + e * v.y + f * v.z,
-            );
-            v.dot(h) / 2.0 + of.linear.dot(v)
+            let squares = squares
+                .iter()
+                .map(|(n, d)| 0.5 * n.dot(v) * n.dot(v) - d * n.dot(v));
+            squares.sum::<f64>()
         };
         let Some(best) = volume.minimum(&of) else {
             continue;
         };
         assert!(volume.polyhedra().iter().any(|c| c.contains(best, 1e-6)));
         for _ in 0..60 {
-            let v = if random.below(2) == 0 {
-                random.vector(0.6)
-            } else {
-                best + random.vector(1e-3)
+            let v = match random.below(2) {
+                0 => random.vector(0.6),
+                _ => best + random.vector(1e-3),
             };
             if volume.polyhedra().iter().any(|c| c.contains(v, 0.0)) {
                 assert!(value(v) >= value(best) - 1e-9, "{v} beats {best}");
@@ -438,11 +367,8 @@ fn cuts_of_a_cell_add_up_to_its_volume() {
         let mut cell = Polyhedron::cuboid(DVec3::splat(-1.0), DVec3::ONE);
         let mut expected = 8.0;
         for _ in 0..6 {
-            assert!(
-                (cell.volume() - expected).abs() < 1e-9,
-                "{} {expected}",
-                cell.volume()
-            );
+            let volume = cell.volume();
+            assert!((volume - expected).abs() < 1e-9, "{volume} {expected}");
             let by = HalfSpace::behind(random.vector(0.7), random.vector(1.0));
             let by = by.expect("a direction");
             let parts = [by, by.complement()].map(|h| cell.cut(h, 1e-12));
@@ -458,20 +384,14 @@ fn cuts_of_a_cell_add_up_to_its_volume() {
 fn a_needle_or_a_folded_ring_has_no_volume() {
     let mut random = Random(4);
     let (_, mut faces) = ring(&mut random, 0.2);
-    let folded: Vec<OldFace> = faces
-        .iter()
-        .map(|f| {
-            // Every other face of the fan lies on its neighbour.
-            let points = f.points.map(|p| DVec3::new(p.x, p.y.abs(), p.z));
-            OldFace { points, ..*f }
-        })
-        .collect();
-    let around = neighborhood(&folded);
-    let empty = around.is_none_or(|a| {
-        Volume::new(&a, 0.05, Source::Edges, 1e-9)
-            .polyhedra()
-            .is_empty()
+    // Every other face of the fan lies on its neighbour.
+    let folded = faces.iter().map(|f| {
+        let points = f.points.map(|p| DVec3::new(p.x, p.y.abs(), p.z));
+        OldFace { points, ..*f }
     });
+    let around = neighborhood(&folded.collect::<Vec<_>>());
+    let volume = around.map(|a| Volume::new(&a, 0.05, Source::Edges, 1e-9));
+    let empty = volume.is_none_or(|volume| volume.polyhedra().is_empty());
     assert!(empty, "a folded ring has an empty kernel");
     faces[0].points[2] = faces[0].points[1] + (faces[0].points[0] - faces[0].points[1]) * 0.5;
     assert!(neighborhood(&faces).is_none());

@@ -1,10 +1,9 @@
 //! How far new faces are from the old ones: the measure is never too small.
 
 use glam::DVec3;
-use lodmark::bound::tolerance::OldFace;
 
-use super::{cases, coordinates, neighborhood, ring, ring_of};
-use crate::support::{Random, distance, distance_by_descent, lattice};
+use super::{cases, coordinates, drawn, inner, is_outer, neighborhood, outer, ring, ring_of};
+use crate::support::{Random, at, distance_by_descent, distance_to_all, lattice};
 
 #[test]
 fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
@@ -18,9 +17,8 @@ fn no_point_of_the_new_faces_is_farther_than_the_measured_deviation() {
         assert!(around.keeps(v, claimed) && !around.keeps(v, claimed * 0.999));
         let mut most: f64 = 0.0;
         for _ in 0..24 {
-            let face = &faces[random.below(faces.len() - 2)];
-            let (s, t) = (random.unit(), random.unit());
-            let p = v * (1.0 - s) + (face.points[1] * t + face.points[2] * (1.0 - t)) * s;
+            let [_, b, c] = faces[random.below(faces.len() - 2)].points;
+            let p = drawn([v, b, c], &mut random);
             let distances = faces.iter().map(|f| distance_by_descent(p, f.points));
             let nearest = distances.fold(f64::INFINITY, f64::min);
             assert!(nearest <= claimed + 1e-3, "{p}: {nearest} above {claimed}");
@@ -44,16 +42,13 @@ fn no_point_above_a_peak_is_farther_than_the_measured_deviation() {
         let claimed = around.deviation(v);
         let corners: Vec<[DVec3; 3]> = faces.iter().map(|f| f.points).collect();
         let mut most: f64 = 0.0;
-        for face in faces.iter().filter(|f| f.ends == [true, false, false]) {
+        for face in faces.iter().filter(is_outer) {
             for p in lattice([v, face.points[1], face.points[2]], 8) {
-                let distances = corners.iter().map(|&f| distance(p, f));
-                most = most.max(distances.fold(f64::INFINITY, f64::min));
+                most = most.max(distance_to_all(p, &corners));
             }
         }
-        assert!(
-            most <= claimed * (1.0 + 1e-12),
-            "{v}: {most} above {claimed}"
-        );
+        let limit = claimed * (1.0 + 1e-12);
+        assert!(most <= limit, "{v}: {most} above {claimed}");
         let over = |f: &[DVec3; 3]| coordinates(*f, v).0.iter().all(|&w| w >= 0.0);
         between += u64::from(!corners.iter().any(over));
     }
@@ -62,22 +57,9 @@ fn no_point_above_a_peak_is_farther_than_the_measured_deviation() {
 
 #[test]
 fn a_new_vertex_above_a_ridge_is_in_no_column_and_counts_all_the_same() {
-    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let [u, w] = [at(-0.5, 0.0, 0.0), at(0.5, 0.0, 0.0)];
-    let [east, north, west, south] = [
-        at(2.0, 0.0, -2.0),
-        at(0.0, 1.0, -2.0),
-        at(-2.0, 0.0, -2.0),
-        at(0.0, -1.0, -2.0),
-    ];
-    let outer = |points| OldFace {
-        points,
-        ends: [true, false, false],
-    };
-    let inner = |points| OldFace {
-        points,
-        ends: [true, false, true],
-    };
+    let [east, west] = [at(2.0, 0.0, -2.0), at(-2.0, 0.0, -2.0)];
+    let [north, south] = [at(0.0, 1.0, -2.0), at(0.0, -1.0, -2.0)];
     let faces = [
         outer([w, south, east]),
         outer([w, east, north]),

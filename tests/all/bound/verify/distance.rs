@@ -11,24 +11,18 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::support::{
-    Random, bounded, code, distance_to_all, expect, faces, folder, lodmark, moved, put,
-    same_on_all_threads, stdout,
+    Random, at, bounded, code, distance_to_all, expect, faces, folder, json, lodmark, mesh_of,
+    moved, put, same_on_all_threads, stdout,
 };
 
 fn check(reference: &Mesh, low: &Mesh, claim: Claim) -> DistanceReport {
     distance(reference, low, claim, false, 2_000, &Silent).expect("both have triangles")
 }
 
-/// The mesh with one vertex moved.
+/// A rectangle with a diagonal of 5.
 fn sheet(z: f64) -> Mesh {
-    let corner = |x, y| DVec3::new(x, y, z);
-    let corners = vec![
-        corner(0.0, 0.0),
-        corner(4.0, 0.0),
-        corner(4.0, 3.0),
-        corner(0.0, 3.0),
-    ];
-    Mesh::from_triangles(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("valid")
+    let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)].map(|(x, y)| at(x, y, z));
+    mesh_of(corners, [[0, 1, 2], [0, 2, 3]])
 }
 
 #[test]
@@ -58,19 +52,15 @@ fn a_vertex_one_percent_too_far_out_is_found_and_one_percent_less_is_not() {
     let claim = 0.03125;
     for vertex in [0, 100, 641] {
         let outward = sphere.positions()[vertex].normalize();
-        let broken = check(
-            &sphere,
-            &moved(&sphere, vertex, outward * (1.01 * claim)),
-            Claim::Absolute(claim),
-        );
+        let check = |share: f64| {
+            let low = moved(&sphere, vertex, outward * (share * claim));
+            check(&sphere, &low, Claim::Absolute(claim))
+        };
+        let broken = check(1.01);
         assert!(!broken.holds, "{broken:?}");
         let worst = &broken.directions[0].farthest;
         assert!((DVec3::from_array(worst.point).length() - 1.0 - 1.01 * claim).abs() < 1e-6);
-        let held = check(
-            &sphere,
-            &moved(&sphere, vertex, outward * (0.99 * claim)),
-            Claim::Absolute(claim),
-        );
+        let held = check(0.99);
         assert!(held.holds && held.proven, "{held:?}");
     }
 }
@@ -79,25 +69,16 @@ fn a_vertex_one_percent_too_far_out_is_found_and_one_percent_less_is_not() {
 fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
     // The hole in the roof is farthest from its middle, where no vertex, edge midpoint or sample need be.
     let roof = sheet(0.0);
-    let frame = {
-        let mut positions = roof.positions().to_vec();
-        positions.extend(
-            [(1.0, 1.0), (1.5, 1.0), (1.5, 1.5), (1.0, 1.5)].map(|(x, y)| DVec3::new(x, y, 0.0)),
-        );
-        let triangles = vec![
-            [0, 1, 5],
-            [0, 5, 4],
-            [1, 2, 6],
-            [1, 6, 5],
-            [2, 3, 7],
-            [2, 7, 6],
-            [3, 0, 4],
-            [3, 4, 7],
-        ];
-        Mesh::from_triangles(positions, triangles).expect("valid")
+    let mut positions = roof.positions().to_vec();
+    positions.extend([(1.0, 1.0), (1.5, 1.0), (1.5, 1.5), (1.0, 1.5)].map(|(x, y)| at(x, y, 0.0)));
+    let side = |(i, j): (u32, u32)| [[i, j, j + 4], [i, j + 4, i + 4]];
+    let sides = [(0, 1), (1, 2), (2, 3), (3, 0)].map(side);
+    let frame = mesh_of(positions, sides.concat());
+    let one_way = |claim, one_sided, samples| {
+        let claim = Claim::Absolute(claim);
+        distance(&roof, &frame, claim, one_sided, samples, &Silent).expect("valid")
     };
-    let report =
-        |claim| distance(&roof, &frame, Claim::Absolute(claim), false, 1, &Silent).expect("valid");
+    let report = |claim| one_way(claim, false, 1);
     assert!(!report(0.25 / 1.01).holds);
     let held = report(0.25 * 1.01);
     assert!(held.holds && held.proven, "{held:?}");
@@ -105,44 +86,39 @@ fn a_peak_between_vertices_is_found_without_a_sample_on_it() {
     let loose = report(100.0);
     assert!(loose.directions[1].upper_bound >= 0.25, "{loose:?}");
     // Every point of the frame lies on the roof.
-    let one_sided =
-        distance(&roof, &frame, Claim::Absolute(1e-2), true, 100, &Silent).expect("valid");
+    let one_sided = one_way(1e-2, true, 100);
     assert!(one_sided.holds && one_sided.proven && one_sided.directions.len() == 1);
 }
 
 #[test]
 fn a_claim_stays_undecided_where_two_faces_are_equally_far_and_nearly_too_far() {
     // Two walls that end in points, and a sheet between these: along x = 0 both are as far, at the upper side farthest.
-    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let wall = |x: f64| {
         [
-            p(x, 0.0, 0.0),
-            p(3.0 * x, 2.0, -1.0),
-            p(3.0 * x, -2.0, -1.0),
+            at(x, 0.0, 0.0),
+            at(3.0 * x, 2.0, -1.0),
+            at(3.0 * x, -2.0, -1.0),
         ]
     };
-    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
-    let walls = walls.expect("valid");
-    for (i, (left, right)) in [(-0.5, 0.37), (-0.123, 0.456), (-0.31, 0.2)]
-        .iter()
-        .enumerate()
-    {
-        let upper = 0.3 + 0.1 * i as f64;
-        let corners = vec![
-            p(*left, upper, 0.0),
-            p(0.05, -0.1, 0.0),
-            p(*right, upper, 0.0),
+    let walls = mesh_of([wall(-1.0), wall(1.0)].concat(), [[0, 1, 2], [3, 4, 5]]);
+    for (left, right, upper) in [(-0.5, 0.37, 0.3), (-0.123, 0.456, 0.4), (-0.31, 0.2, 0.5)] {
+        let corners = [
+            at(left, upper, 0.0),
+            at(0.05, -0.1, 0.0),
+            at(right, upper, 0.0),
         ];
-        let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+        let sheet = mesh_of(corners, [[0, 1, 2]]);
         let most = libm::sqrt(1.0 + upper * upper);
-        for share in [1e-3, 1e-5, 1e-7] {
+        let check = |share: f64| {
             let claim = Claim::Absolute(most * (1.0 + share));
-            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid")
+        };
+        for share in [1e-3, 1e-5, 1e-7] {
+            let found = check(share);
             assert!(found.proven, "{share}: {found:?}");
             let proven = found.directions[0].upper_bound;
             assert!(proven >= most * (1.0 - 1e-12), "{proven} below {most}");
-            let claim = Claim::Absolute(most * (1.0 - share));
-            let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
+            let found = check(-share);
             assert!(!found.proven, "{share}: {found:?}");
         }
     }
@@ -157,62 +133,47 @@ fn samples_crowd_on_no_triangle() {
     for t in 0..31_u32 {
         let size = 0.2 + random.unit();
         let x = 3.0 * f64::from(t);
-        let corners = [(x, 0.0), (x + size, 0.0), (x, size)].map(|(x, y)| DVec3::new(x, y, 0.0));
-        let up = t % 3 == 1;
-        let by = DVec3::Z * if up { 1.0 } else { 0.0 };
+        let corners = [(x, 0.0), (x + size, 0.0), (x, size)].map(|(x, y)| at(x, y, 0.0));
+        let up = f64::from(u8::from(t % 3 == 1));
         flat.extend(corners);
-        raised.extend(corners.map(|p| p + by));
+        raised.extend(corners.map(|p| p + DVec3::Z * up));
         faces.push([3 * t, 3 * t + 1, 3 * t + 2]);
         area += size * size;
         length += size;
-        if up {
-            shares[0] += size * size;
-            shares[1] += size;
-        }
+        shares[0] += size * size * up;
+        shares[1] += size * up;
     }
-    let flat = Mesh::from_triangles(flat, faces.clone()).expect("valid");
-    let raised = Mesh::from_triangles(raised, faces).expect("valid");
+    let flat = mesh_of(flat, &faces[..]);
+    let raised = mesh_of(raised, faces);
     let claim = Claim::Absolute(0.5);
     let found = distance(&flat, &raised, claim, true, 9_000, &Silent).expect("valid");
     // Eight ninths by area, one by length, and all corners: of ten raised triangles.
     let expected = 8_000.0 * shares[0] / area + 1_000.0 * shares[1] / length + 30.0;
     let violations = found.directions[0].violations as f64;
-    assert!(
-        (violations - expected).abs() < 0.005 * 9_000.0,
-        "{violations} of {expected}"
-    );
+    let off = (violations - expected).abs();
+    assert!(off < 0.005 * 9_000.0, "{violations} of {expected}");
 }
 
 #[test]
 fn what_no_cut_decides_is_not_said_to_be_proven() {
     // Along all of x = 0 both walls are as far as the claim: no part across that line is near one of them as a whole.
-    let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let wall = |x: f64| [p(x, -9.0, 0.0), p(x, 9.0, 0.0), p(3.0 * x, 0.0, -1.0)];
-    let walls = Mesh::from_triangles([wall(-1.0), wall(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
-    let corners = vec![p(-0.5, 0.0, 0.0), p(0.4, 0.1, 0.0), p(-0.1, 2.0, 0.0)];
-    let sheet = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("valid");
+    let wall = |x: f64| [at(x, -9.0, 0.0), at(x, 9.0, 0.0), at(3.0 * x, 0.0, -1.0)];
+    let walls = mesh_of([wall(-1.0), wall(1.0)].concat(), [[0, 1, 2], [3, 4, 5]]);
+    let corners = [at(-0.5, 0.0, 0.0), at(0.4, 0.1, 0.0), at(-0.1, 2.0, 0.0)];
+    let sheet = mesh_of(corners, [[0, 1, 2]]);
     let claim = Claim::Absolute(1.0);
-    let found = distance(&walls.expect("valid"), &sheet, claim, true, 50, &Silent).expect("valid");
+    let found = distance(&walls, &sheet, claim, true, 50, &Silent).expect("valid");
     assert!(found.holds && !found.proven, "{found:?}");
-    let [only] = &found.directions[..] else {
-        panic!("{found:?}");
-    };
-    assert!(
-        !only.is_proven && only.upper_bound > 1.0 && only.undecided_area > 0.0,
-        "{only:?}"
-    );
+    assert_eq!(found.directions.len(), 1);
+    let only = &found.directions[0];
+    assert!(!only.is_proven && only.upper_bound > 1.0 && only.undecided_area > 0.0);
 }
 
 #[test]
 fn needles_points_and_segments_are_surfaces_too() {
-    let positions = vec![
-        DVec3::ZERO,
-        DVec3::X,
-        DVec3::new(2.0, 1e-12, 0.0),
-        DVec3::new(0.0, 0.0, 3.0),
-    ];
-    let needle = Mesh::from_triangles(positions.clone(), vec![[0, 1, 2]]).expect("valid");
-    let point = Mesh::from_triangles(positions, vec![[3, 3, 3]]).expect("valid");
+    let positions = [DVec3::ZERO, DVec3::X, at(2.0, 1e-12, 0.0), DVec3::Z * 3.0];
+    let needle = mesh_of(positions, [[0, 1, 2]]);
+    let point = mesh_of(positions, [[3, 3, 3]]);
     let report = check(&needle, &point, Claim::Absolute(4.0));
     assert!(report.holds && report.proven, "{report:?}");
     let [to_needle, to_point] = &report.directions[..] else {
@@ -235,10 +196,8 @@ fn claims_without_a_meaning_are_refused() {
         let refused = distance(a, b, Claim::Relative(0.1), false, 1, &Silent);
         assert_eq!(refused.expect_err("nothing to measure").exit_code(), 3);
     }
-    assert!(
-        check(&sheet, &sheet, Claim::Relative(0.0)).holds,
-        "no distance at all"
-    );
+    let itself = check(&sheet, &sheet, Claim::Relative(0.0));
+    assert!(itself.holds, "no distance at all");
 }
 
 #[test]
@@ -251,13 +210,10 @@ fn the_number_of_threads_changes_no_bit() {
 
 fn soup(random: &mut Random, triangles: usize) -> Mesh {
     let mut coordinate = || (random.unit() * 8.0).floor() / 4.0 + random.unit() * 0.125;
-    let positions: Vec<DVec3> = (0..3 * triangles)
-        .map(|_| DVec3::new(coordinate(), coordinate(), coordinate()))
-        .collect();
-    let corners = (0..triangles as u32)
-        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-        .collect();
-    Mesh::from_triangles(positions, corners).expect("valid")
+    let mut point = || at(coordinate(), coordinate(), coordinate());
+    let positions: Vec<DVec3> = (0..3 * triangles).map(|_| point()).collect();
+    let corners = (0..triangles as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    mesh_of(positions, corners.collect::<Vec<_>>())
 }
 
 proptest! {
@@ -299,34 +255,18 @@ fn the_command_ends_with_the_code_of_its_verdict() {
     put(&dir, "ref.ply", &sphere);
     let outward = sphere.positions()[5].normalize();
     put(&dir, "low.ply", &moved(&sphere, 5, outward * 0.101));
-    let run = |error: &str, more: &[&str]| {
-        let words = [
-            "verify",
-            "ref.ply",
-            "low.ply",
-            "--error-abs",
-            error,
-            "--samples",
-            "1000",
-            "--json",
-            "r.json",
-        ];
-        lodmark(&dir, &[&words, more].concat())
+    let run = |error: &str| {
+        let words = "verify ref.ply low.ply --samples 1000 --json r.json";
+        let output = lodmark(&dir, &format!("{words} --error-abs {error}"));
+        (code(&output), stdout(&output))
     };
-    let broken = run("0.1", &[]);
-    assert_eq!(code(&broken), 1);
-    assert!(
-        stdout(&broken).contains("the claim is broken"),
-        "{}",
-        stdout(&broken)
-    );
-    let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(json["holds"], false);
-    assert_eq!(json["directions"][0]["from"], "simplified");
-    let held = run("0.102", &["--one-sided"]);
-    assert_eq!(code(&held), 0);
-    assert!(stdout(&held).contains("proven"), "{}", stdout(&held));
+    let (exit, said) = run("0.1");
+    assert!(exit == 1 && said.contains("the claim is broken"), "{said}");
+    let report = json(&dir, "r.json");
+    assert_eq!(report["holds"], false);
+    assert_eq!(report["directions"][0]["from"], "simplified");
+    let (exit, said) = run("0.102 --one-sided");
+    assert!(exit == 0 && said.contains("proven"), "{said}");
     expect(&dir, 2, "verify ref.ply low.ply");
     expect(&dir, 2, "verify ref.ply low.ply --error -1");
     expect(&dir, 2, "verify ref.ply low.ply --error 0.1 --error-abs 1");
@@ -335,28 +275,14 @@ fn the_command_ends_with_the_code_of_its_verdict() {
 
 #[test]
 fn a_face_without_area_is_near_by_having_none() {
-    let p = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-    let mut corners = vec![
-        p(-1.0, -1.0),
-        p(-1.0, 1.0),
-        p(-3.0, 0.0),
-        p(1.0, -1.0),
-        p(1.0, 1.0),
-        p(3.0, 0.0),
-    ];
-    let mut faces = vec![[0, 1, 2], [3, 4, 5]];
-    let reference = Mesh::from_triangles(corners.clone(), faces.clone()).expect("valid");
+    let sides = [-1.0, 1.0].map(|x| [at(x, -1.0, 0.0), at(x, 1.0, 0.0), at(3.0 * x, 0.0, 0.0)]);
     // A line across the gap, whose middle is 1 from both sides.
-    corners.extend([
-        p(-0.712_345_612_345, 0.0),
-        p(0.587_654_398_765, 0.0),
-        p(0.1234, 0.0),
-    ]);
-    faces.push([6, 7, 8]);
-    let low = Mesh::from_triangles(corners, faces).expect("valid");
-    let claim = Claim::Absolute(0.999_94);
-    let found = distance(&reference, &low, claim, true, 9, &Silent).expect("both have triangles");
-    assert!(!found.proven, "{found:?}");
-    let found = distance(&reference, &low, Claim::Absolute(1.01), true, 9, &Silent);
-    assert!(found.expect("both have triangles").proven);
+    let line = [-0.712_345_612_345, 0.587_654_398_765, 0.1234].map(|x| at(x, 0.0, 0.0));
+    let corners = [sides[0], sides[1], line].concat();
+    let reference = mesh_of(&corners[..6], [[0, 1, 2], [3, 4, 5]]);
+    let low = mesh_of(corners, [[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+    for (claim, proven) in [(0.999_94, false), (1.01, true)] {
+        let found = distance(&reference, &low, Claim::Absolute(claim), true, 9, &Silent);
+        assert_eq!(found.expect("both have triangles").proven, proven);
+    }
 }
