@@ -90,6 +90,15 @@ pub struct Reason {
 impl Reason {
     /// Most reasons that a method has.
     pub const MOST: usize = 4;
+
+    /// The reason of a place, a name, and whether it is the user's bound.
+    pub(crate) const fn new(index: usize, name: &'static str, is_bound: bool) -> Self {
+        Self {
+            index,
+            name,
+            is_bound,
+        }
+    }
 }
 
 /// Counts by reason.

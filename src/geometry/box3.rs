@@ -1,6 +1,6 @@
 //! A box with sides along the axes.
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 /// A box with sides along the axes, from its smallest to its largest corner. Nothing is rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,6 +24,12 @@ impl Box3 {
         let mut points = points.into_iter();
         let first = points.next()?;
         Some(points.fold(Self::at(first), |all, p| all.union(Self::at(p))))
+    }
+
+    /// One of the eight corners: from low to high along x by bit 0 of its number, along y by bit 1, along z by bit 2.
+    pub fn corner(&self, i: usize) -> DVec3 {
+        let high = BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
+        DVec3::select(high, self.high, self.low)
     }
 
     /// The box of the corners of a triangle.

@@ -25,6 +25,18 @@ pub fn double_area(corners: [DVec3; 3]) -> f64 {
     length(area_normal(corners))
 }
 
+/// The coordinate axis that is farthest from a direction.
+pub fn axis_across(direction: DVec3) -> DVec3 {
+    let size = direction.abs();
+    if size.x <= size.y && size.x <= size.z {
+        DVec3::X
+    } else if size.y <= size.z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    }
+}
+
 /// Squared length, in the order in which [`Box3::squared_distance`] sums as well: the tree needs that.
 #[inline]
 fn squared(v: DVec3) -> f64 {

@@ -29,6 +29,13 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     }
 }
 
+/// The smallest and the largest of some numbers: infinity and minus infinity where there is none.
+pub fn range(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let all = numbers.into_iter();
+    all.fold(none, |[low, high], x| [low.min(x), high.max(x)])
+}
+
 /// Sine.
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)

@@ -24,7 +24,7 @@ use super::{
     piece::{Allowance, Answer, Corner, FacePieces, Piece, is_whole, itself},
     sectors::CutScratch,
 };
-use crate::num::{Each, fixed::Weights31, math::sqrt};
+use crate::num::{fixed::Weights31, math::sqrt};
 
 /// Corners that all pieces may have together, for each original triangle and for small meshes: this bounds the memory.
 /// Simplified scans need some five for each triangle.
@@ -94,15 +94,13 @@ pub struct Correspondence {
 impl Correspondence {
     /// Every triangle stands for itself, under its index as the face's id; `alive` says which ones exist. O(n).
     pub fn new(originals: Vec<[DVec3; 3]>, alive: impl Fn(u32) -> bool) -> Self {
-        let faces = (0..originals.len() as u32)
-            .map(|t| FacePieces {
-                itself: alive(t),
-                ..FacePieces::default()
-            })
-            .collect();
+        let whole = |t| FacePieces {
+            itself: alive(t),
+            ..FacePieces::default()
+        };
         Self {
+            faces: (0..originals.len() as u32).map(whole).collect(),
             originals,
-            faces,
             itself: itself(),
             total: 0,
         }
@@ -110,26 +108,17 @@ impl Correspondence {
 
     /// The triangles of a mesh, each standing for itself. O(n).
     pub fn identity(originals: Vec<[DVec3; 3]>) -> Self {
-        let whole = FacePieces {
-            itself: true,
-            ..FacePieces::default()
-        };
-        Self {
-            faces: vec![whole; originals.len()],
-            originals,
-            itself: itself(),
-            total: 0,
-        }
+        Self::new(originals, |_| true)
     }
 
     /// The same map with the faces `ids[0]`, `ids[1]`, ... as faces 0, 1, ..., and lengths in other units.
     pub fn renumbered(
         mut self,
-        ids: &[u32],
+        ids: impl Iterator<Item = u32>,
         units: impl Fn(DVec3) -> DVec3,
         length: impl Fn(f64) -> f64,
     ) -> Self {
-        let faces = ids.iter().map(|&id| {
+        let faces = ids.map(|id| {
             let mut pieces = std::mem::take(&mut self.faces[id as usize]);
             if pieces.itself && pieces.heads.is_empty() {
                 pieces.itself = false;
@@ -139,13 +128,11 @@ impl Correspondence {
             pieces.displacement = length(pieces.displacement);
             pieces
         });
-        let faces = faces.collect();
-        Self {
-            originals: self.originals.iter().map(|t| t.each(&units)).collect(),
-            faces,
-            itself: self.itself,
-            total: self.total,
+        self.faces = faces.collect();
+        for corner in self.originals.iter_mut().flatten() {
+            *corner = units(*corner);
         }
+        self
     }
 
     /// Number of face ids.
@@ -221,11 +208,8 @@ impl Correspondence {
 
     /// Corners of the pieces of a layout that were cut.
     fn cut_corners(&self, layout: &Layout) -> usize {
-        let faces = layout
-            .before
-            .iter()
-            .map(|b| &self.faces[b.face.id as usize]);
-        faces.map(|pieces| pieces.corners.len()).sum()
+        let of = |b: &Before| self.faces[b.face.id as usize].corners.len();
+        layout.before.iter().map(of).sum()
     }
 
     /// Calls `visit` with every piece after the collapse, its original triangle and the part that it goes to, as long as
@@ -274,10 +258,8 @@ impl Correspondence {
         split.sort_unstable();
         for same in split.chunk_by(|a, b| a.0 == b.0) {
             let triangle = same[0].0;
-            let pieces = same
-                .iter()
-                .map(|&(.., [a, b])| &cut[a as usize..b as usize]);
-            outlines(pieces, outlining, outline, ends)?;
+            let piece = |&(.., [a, b]): &(u32, u32, [u32; 2])| &cut[a as usize..b as usize];
+            outlines(same.iter().map(piece), outlining, outline, ends)?;
             let mut start = 0;
             for &end in ends.iter() {
                 let mut place = |part: &Part, polygon: &[OutlineCorner]| {

@@ -3,7 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::layout::{Collapse, Face};
-use crate::{geometry::area_normal, num::math::unit};
+use crate::{
+    geometry::{area_normal, axis_across},
+    num::math::unit,
+};
 
 /// The map from space to the plane of the faces around a collapsed edge.
 pub(super) struct Projection {
@@ -20,15 +23,7 @@ impl Projection {
             sum += area_normal(*points);
         }
         let normal = unit(sum)?;
-        let size = normal.abs();
-        let other = if size.x <= size.y && size.x <= size.z {
-            DVec3::X
-        } else if size.y <= size.z {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        };
-        let across = unit(other.cross(normal))?;
+        let across = unit(axis_across(normal).cross(normal))?;
         let origin = collapse.to;
         let reach = collapse.removed.iter().flat_map(|f| f.points);
         let reach = reach.fold(0.0_f64, |r, p| r.max((p - origin).abs().max_element()));

@@ -45,8 +45,11 @@ pub struct Trial {
     /// For every point the staying witnesses, and all faces, within its reach, as bits.
     staying_masks: Vec<u128>,
     masks: Vec<u128>,
-    pieces: Vec<([DVec3; 3], [u128; 3])>,
+    pieces: Vec<Piece>,
 }
+
+/// A part of a triangle, and the faces within reach of each of its corners.
+type Piece = ([DVec3; 3], [u128; 3]);
 
 /// The new witnesses after a change that passed its test.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -193,9 +196,14 @@ impl Trial {
     /// True where every point of the original that the change concerns is proved to be within reach of the faces that
     /// come, `fan`, or of a witness that stays.
     pub fn covers(&mut self, fan: impl Iterator<Item = [DVec3; 3]>, reach: Reach) -> bool {
-        self.arm(fan)
-            && self.all_within_reach(reach)
-            && (0..self.corners.len()).all(|i| self.triangle(i, reach, &mut |_, _| {}))
+        if !self.arm(fan) || !self.all_within_reach(reach) {
+            return false;
+        }
+        let mut pieces = std::mem::take(&mut self.pieces);
+        let mut near = |i| self.triangle(i, reach, &mut pieces, &mut |_, _| {});
+        let all = (0..self.corners.len()).all(&mut near);
+        self.pieces = pieces;
+        all
     }
 
     /// As [`Trial::covers`]; fills `change` with the new witnesses. `ids` are the faces that come, in the order of
@@ -215,16 +223,16 @@ impl Trial {
         if !self.arm(fan) || !self.all_within_reach(reach) {
             return false;
         }
+        let mut pieces = std::mem::take(&mut self.pieces);
         for i in 0..self.corners.len() {
             let mut chosen = 0_u128;
-            let facets = std::mem::take(&mut self.facets);
-            let near = self.triangle_of(&facets, i, reach, &mut |piece, common| {
+            let near = self.triangle(i, reach, &mut pieces, &mut |piece, common| {
                 if common & chosen == 0 {
-                    chosen |= 1 << nearest(&facets, common, piece);
+                    chosen |= 1 << nearest(&self.facets, common, piece);
                 }
             });
-            self.facets = facets;
             if !near {
+                self.pieces = pieces;
                 return false;
             }
             let staying = self.staying.len();
@@ -237,6 +245,7 @@ impl Trial {
             }
             change.triangles.push((self.ids[i], change.witnesses.len()));
         }
+        self.pieces = pieces;
         true
     }
 
@@ -260,26 +269,15 @@ impl Trial {
         true
     }
 
-    fn triangle(
-        &mut self,
-        i: usize,
-        reach: Reach,
-        settled: &mut dyn FnMut([DVec3; 3], u128),
-    ) -> bool {
-        let facets = std::mem::take(&mut self.facets);
-        let near = self.triangle_of(&facets, i, reach, settled);
-        self.facets = facets;
-        near
-    }
-
     /// Tests one triangle; `settled` hears of every piece that is within reach, and of which faces.
-    fn triangle_of(
-        &mut self,
-        facets: &[Facet],
+    fn triangle(
+        &self,
         i: usize,
         reach: Reach,
+        pieces: &mut Vec<Piece>,
         settled: &mut dyn FnMut([DVec3; 3], u128),
     ) -> bool {
+        let facets = &self.facets[..];
         let corners = self.corners[i].each(|p| self.points[p as usize]);
         let masks = self.corners[i].each(|p| self.masks[p as usize]);
         let common = masks[0] & masks[1] & masks[2];
@@ -287,10 +285,10 @@ impl Trial {
             settled(corners, common);
             return true;
         }
-        self.pieces.clear();
-        self.pieces.push((corners, masks));
+        pieces.clear();
+        pieces.push((corners, masks));
         let mut count = 0;
-        while let Some((corners, masks)) = self.pieces.pop() {
+        while let Some((corners, masks)) = pieces.pop() {
             let common = masks[0] & masks[1] & masks[2];
             if common != 0 {
                 settled(corners, common);
@@ -312,7 +310,7 @@ impl Trial {
                 }
                 let points = cut.parts(corners, cut.between);
                 let masks = cut.parts(masks, between);
-                self.pieces.extend(points.into_iter().zip(masks));
+                pieces.extend(points.into_iter().zip(masks));
                 continue;
             }
             let between = mask(facets, middle, reach);
@@ -323,7 +321,7 @@ impl Trial {
                 let (mut corners, mut masks) = (corners, masks);
                 corners[replaced] = middle;
                 masks[replaced] = between;
-                self.pieces.push((corners, masks));
+                pieces.push((corners, masks));
             }
         }
         true

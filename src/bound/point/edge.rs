@@ -79,33 +79,15 @@ impl Edge {
         let (sine, cosine) = (aperture.sin(), aperture.cos());
         let limit = |s: f64| 1.0 / viewpoint::extent_from(edge.at(s), point, axis, aperture);
         // Where it is limited at all it is at an end: the denominator of the extent is convex along the line.
-        let mut best = (0.0, f64::NAN);
         // A line without an end is: far out its angle with the axis exceeds the aperture on one side at least.
         let far = length(point - edge.origin) * (4.0 / (sine * cosine)).min(1e12);
-        for end in edge.ends(far) {
-            let found = limit(end);
-            if found > best.0 {
-                best = (found, end);
-            }
-        }
-        if best.0 <= 0.0 {
+        let start = best_of(edge.ends(far), (0.0, f64::NAN), &limit);
+        if start.0 <= 0.0 {
             return None;
         }
-        let slope = sine * edge.direction.dot(axis);
-        for _ in 0..STEPS {
-            let mut next = best;
-            for s in ridge.maxima(cosine, slope, best.0 * sine, [edge.low, edge.high]) {
-                let found = limit(s);
-                if found > next.0 {
-                    next = (found, s);
-                }
-            }
-            if next.0 <= best.0 {
-                break;
-            }
-            best = next;
-        }
-        Some(edge.at(best.1))
+        let (slope, range) = (sine * edge.direction.dot(axis), [edge.low, edge.high]);
+        let maxima = |best: f64| ridge.maxima(cosine, slope, best * sine, range);
+        Some(edge.at(climb(start, &limit, maxima)))
     }
 
     /// The viewpoint that sees the two points farthest apart; `None` where none tells them apart. The edge does not
@@ -116,55 +98,59 @@ impl Edge {
         let axis = crate::num::math::unit(half)?;
         let edge = self.centred_at_foot_of(middle);
         let ridge = Ridge::new(&edge, point, axis);
-        // The cotangent of the angle, a ratio whose denominator is not negative: the smallest is wanted.
-        let cotangent = |s: f64| {
+        // Minus the cotangent of the angle, a ratio whose denominator is not negative: the largest is wanted.
+        let seen = |s: f64| {
             let v = edge.at(s);
             let (a, b) = (point - v, moved - v);
-            a.dot(b) / length(a.cross(moved - point))
+            -(a.dot(b) / length(a.cross(moved - point)))
         };
-        let mut best = (f64::INFINITY, f64::NAN);
         let nearest = 0.0_f64.max(edge.low).min(edge.high);
         let far = 4.0 * (radius + length(middle - edge.origin));
-        for s in edge.ends(far).into_iter().chain([nearest]) {
-            let found = cotangent(s);
-            if found < best.0 {
-                best = (found, s);
-            }
-        }
-        if !best.0.is_finite() {
+        let [first, last] = edge.ends(far);
+        let start = best_of([first, last, nearest], (f64::NEG_INFINITY, f64::NAN), &seen);
+        if !start.0.is_finite() {
             return None;
         }
-        for _ in 0..STEPS {
-            let mut next = best;
-            for s in ridge.maxima(2.0 * radius * best.0, 0.0, 1.0, [edge.low, edge.high]) {
-                let found = cotangent(s);
-                if found < next.0 {
-                    next = (found, s);
-                }
-            }
-            if next.0 >= best.0 {
-                break;
-            }
-            best = next;
-        }
-        Some(edge.at(best.1))
+        let range = [edge.low, edge.high];
+        let maxima = |best: f64| ridge.maxima(-2.0 * radius * best, 0.0, 1.0, range);
+        Some(edge.at(climb(start, &seen, maxima)))
     }
 
     /// Both ends, a place so far out for an end at infinity.
     fn ends(&self, far: f64) -> [f64; 2] {
-        [
-            if self.low.is_finite() {
-                self.low
-            } else {
-                self.high.min(0.0) - far
-            },
-            if self.high.is_finite() {
-                self.high
-            } else {
-                self.low.max(0.0) + far
-            },
-        ]
+        let (low, high) = (self.low, self.high);
+        let end = |end: f64, place: f64| if end.is_finite() { end } else { place };
+        [end(low, high.min(0.0) - far), end(high, low.max(0.0) + far)]
     }
+}
+
+/// The place with the largest value, if that is above the value of the one that is known.
+fn best_of<const N: usize>(
+    places: [f64; N],
+    known: (f64, f64),
+    value: &impl Fn(f64) -> f64,
+) -> (f64, f64) {
+    let found = places.into_iter().map(|s| (value(s), s));
+    found.fold(
+        known,
+        |best, next| if next.0 > best.0 { next } else { best },
+    )
+}
+
+/// The place with the largest value: from the best one so far to the best of the maxima for its value, while that rises.
+fn climb(
+    mut best: (f64, f64),
+    value: &impl Fn(f64) -> f64,
+    maxima: impl Fn(f64) -> [f64; 2],
+) -> f64 {
+    for _ in 0..STEPS {
+        let next = best_of(maxima(best.0), best, value);
+        if next.0 <= best.0 {
+            break;
+        }
+        best = next;
+    }
+    best.1
 }
 
 /// The distance of the viewpoints of an edge to the axis: `h(s) = sqrt(squared + spread (s - centre)^2)`.
@@ -206,7 +192,8 @@ impl Ridge {
         let curved = 0.5 * gain * self.spread * self.squared / weight;
         let root = if curved > 0.0 { cbrt(curved) } else { 0.0 };
         let above = root * root - self.squared;
-        let convex = if gain > 0.0 && self.spread > 0.0 && above > 0.0 {
+        let is_convex = gain > 0.0 && self.spread > 0.0 && above > 0.0;
+        let convex = if is_convex {
             sqrt(above / self.spread)
         } else {
             0.0
@@ -274,11 +261,8 @@ impl Search<'_> {
                 return s;
             }
             let newton = s - first / second;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
+            let inside = newton > low && newton < high;
+            let next = if inside { newton } else { 0.5 * (low + high) };
             if (next - s).abs() <= 1e-15 * s.abs() {
                 return next;
             }

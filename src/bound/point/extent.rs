@@ -27,24 +27,19 @@ pub struct Extent {
 /// It is the extent of a viewpoint of the cell, and no other viewpoint has a smaller one but for rounding: up to some
 /// 1e-9 of it. Positions should have magnitudes near 1. Cost: less than a microsecond for each face and edge.
 pub fn extent(cell: &ViewCell, point: DVec3, direction: DVec3, aperture: Aperture) -> Extent {
-    let unbounded = Extent {
-        length: f64::INFINITY,
-        viewpoint: None,
-    };
+    let extent = |length, viewpoint| Extent { length, viewpoint };
+    let found = extent(f64::INFINITY, None);
     let Some(direction) = unit(direction) else {
-        return unbounded;
+        return found;
     };
     if cell.contains(point) {
-        return Extent {
-            length: 0.0,
-            viewpoint: Some(point),
-        };
+        return extent(0.0, Some(point));
     }
     let mut least = Least {
         point,
         direction,
         aperture,
-        found: unbounded,
+        found,
     };
     if aperture.sin() > 0.0 {
         ask(cell, &mut least);
@@ -52,10 +47,7 @@ pub fn extent(cell: &ViewCell, point: DVec3, direction: DVec3, aperture: Apertur
     }
     // Theta = 0: whoever does not look along the direction sees every move.
     let Some(corners) = cell.corners() else {
-        return Extent {
-            length: 0.0,
-            viewpoint: None,
-        };
+        return extent(0.0, None);
     };
     for &corner in corners {
         least.take(corner);
@@ -82,10 +74,8 @@ impl Question for Least {
     fn take(&mut self, viewpoint: DVec3) {
         let length = extent_from(viewpoint, self.point, self.direction, self.aperture);
         if length < self.found.length {
-            self.found = Extent {
-                length,
-                viewpoint: Some(viewpoint),
-            };
+            let viewpoint = Some(viewpoint);
+            self.found = Extent { length, viewpoint };
         }
     }
 }

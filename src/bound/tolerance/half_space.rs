@@ -17,10 +17,8 @@ impl HalfSpace {
     /// The half-space behind a plane through `point`; `None` where the normal has no direction.
     pub fn behind(point: DVec3, normal: DVec3) -> Option<Self> {
         let normal = math::unit(normal)?;
-        Some(Self {
-            normal,
-            offset: normal.dot(point),
-        })
+        let offset = normal.dot(point);
+        Some(Self { normal, offset })
     }
 
     /// Distance of `p` from the half-space; negative inside.

@@ -93,17 +93,17 @@ impl Neighborhood {
     /// The deviation, or a smaller number above `enough`.
     fn measure(&self, v: DVec3, enough: f64) -> f64 {
         let mut most: f64 = 0.0;
-        for &[p, q] in self.links() {
+        for &[p, q] in &self.links {
             let whole = Polygon::triangle([v, p, q]);
-            for prism in self.prisms() {
+            for prism in &self.prisms {
                 most = most.max(prism.height_of(whole));
                 if most > enough {
                     return most;
                 }
             }
         }
-        let facets: Vec<Facet> = self.faces().iter().map(|f| Facet::new(f.points)).collect();
-        for &[p, q] in self.links() {
+        let facets: Vec<Facet> = self.faces.iter().map(|f| Facet::new(f.points)).collect();
+        for &[p, q] in &self.links {
             most = most.max(self.gaps(&facets, [v, p, q], most));
             if most > enough {
                 return most;
@@ -128,7 +128,7 @@ impl Neighborhood {
         }
         let mut left = vec![Polygon::triangle(corners)];
         let mut next = Vec::new();
-        for prism in self.prisms() {
+        for prism in &self.prisms {
             for mut piece in left.drain(..) {
                 for &wall in &prism.walls {
                     let [inside, outside] = piece.split(wall);

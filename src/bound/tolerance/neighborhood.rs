@@ -32,10 +32,13 @@ impl OldFace {
 /// The triangles around an edge, their prisms and the link.
 #[derive(Clone, Debug, Default)]
 pub struct Neighborhood {
-    origin: DVec3,
-    faces: Vec<OldFace>,
-    prisms: Vec<Prism>,
-    links: Vec<[DVec3; 2]>,
+    /// What all else is relative to.
+    pub(super) origin: DVec3,
+    pub(super) faces: Vec<OldFace>,
+    /// Of the faces, one each.
+    pub(super) prisms: Vec<Prism>,
+    /// The sides of the link that the faces show.
+    pub(super) links: Vec<[DVec3; 2]>,
 }
 
 impl Neighborhood {
@@ -58,21 +61,6 @@ impl Neighborhood {
     /// The point that coordinates are relative to.
     pub fn origin(&self) -> DVec3 {
         self.origin
-    }
-
-    /// The old triangles, relative.
-    pub fn faces(&self) -> &[OldFace] {
-        &self.faces
-    }
-
-    /// Their prisms, relative.
-    pub fn prisms(&self) -> &[Prism] {
-        &self.prisms
-    }
-
-    /// The edges of the link, relative; a new triangle stands on every one.
-    pub fn links(&self) -> &[[DVec3; 2]] {
-        &self.links
     }
 
     /// The convex kernel: behind the walls that stand on the link.

@@ -5,7 +5,10 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::{HalfSpace, Quadratic};
-use crate::num::Each;
+use crate::{
+    geometry::Box3,
+    num::{Each, math},
+};
 
 /// A side of a polyhedron.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,14 +26,7 @@ pub struct Polyhedron {
 impl Polyhedron {
     /// The box between two corners, each coordinate of the second above that of the first.
     pub fn cuboid(low: DVec3, high: DVec3) -> Self {
-        let at = |i: usize| {
-            let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
-            DVec3::new(
-                pick(0, low.x, high.x),
-                pick(1, low.y, high.y),
-                pick(2, low.z, high.z),
-            )
-        };
+        let at = |i: usize| Box3 { low, high }.corner(i);
         let sides = [
             (-DVec3::X, [0, 4, 6, 2]),
             (DVec3::X, [1, 3, 7, 5]),
@@ -39,12 +35,11 @@ impl Polyhedron {
             (-DVec3::Z, [0, 2, 3, 1]),
             (DVec3::Z, [4, 5, 7, 6]),
         ];
-        let side = |(normal, corners): (DVec3, [usize; 4])| Side {
-            bound: HalfSpace {
-                normal,
-                offset: normal.dot(at(corners[0])),
-            },
-            points: corners.each(at).to_vec(),
+        let side = |(normal, corners): (DVec3, [usize; 4])| {
+            let points = corners.each(at).to_vec();
+            let offset = normal.dot(points[0]);
+            let bound = HalfSpace { normal, offset };
+            Side { bound, points }
         };
         Self {
             sides: sides.map(side).to_vec(),
@@ -68,12 +63,7 @@ impl Polyhedron {
 
     /// The part of it in a half-space; `None` where that is no more than `tolerance` thick there.
     pub fn cut(&self, by: HalfSpace, tolerance: f64) -> Option<Self> {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for p in self.corners() {
-            let h = by.excess(p);
-            low = low.min(h);
-            high = high.max(h);
-        }
+        let [low, high] = math::range(self.corners().map(|p| by.excess(p)));
         if high <= tolerance {
             return Some(self.clone());
         }
@@ -92,20 +82,18 @@ impl Polyhedron {
                 }
                 if (hp < 0.0 && hq > 0.0) || (hp > 0.0 && hq < 0.0) {
                     // In one direction for both sides of the edge, so that both get the same point.
-                    let (a, b, ha, hb) = if hp < hq {
-                        (p, q, hp, hq)
-                    } else {
-                        (q, p, hq, hp)
-                    };
+                    let mut ends = [(p, hp), (q, hq)];
+                    if hp >= hq {
+                        ends.swap(0, 1);
+                    }
+                    let [(a, ha), (b, hb)] = ends;
                     points.push(a + (b - a) * (ha / (ha - hb)));
                 }
             }
             rim.extend(points.iter().filter(|&&p| by.excess(p) >= -tolerance));
             if points.len() >= 3 {
-                sides.push(Side {
-                    bound: side.bound,
-                    points,
-                });
+                let bound = side.bound;
+                sides.push(Side { bound, points });
             }
         }
         let points = around(rim, by.normal, tolerance);

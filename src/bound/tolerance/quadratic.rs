@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    geometry::Sym3,
+    geometry::{Sym3, axis_across},
     num::{Each, math},
 };
 
@@ -38,14 +38,7 @@ impl Quadratic {
 
     /// The point of the plane through `point` across `normal` at which it is least; `None` where that is not one.
     pub fn minimum_on_plane(&self, point: DVec3, normal: DVec3) -> Option<DVec3> {
-        let axis = if normal.x.abs() <= normal.y.abs() && normal.x.abs() <= normal.z.abs() {
-            DVec3::X
-        } else if normal.y.abs() <= normal.z.abs() {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        };
-        let x = math::unit(normal.cross(axis))?;
+        let x = math::unit(normal.cross(axis_across(normal)))?;
         let y = normal.cross(x);
         let (hx, hy) = (self.matrix.times(x), self.matrix.times(y));
         let (xx, xy, yy) = (x.dot(hx), x.dot(hy), y.dot(hy));

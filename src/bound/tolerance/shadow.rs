@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::HalfSpace;
-use crate::num::Each;
+use crate::num::{Each, math};
 
 /// The shadows of a cap from the segment `source` (its ends may coincide): none, one, or two where the source is on both
 /// sides of the cap's plane. Each is the intersection of the half-spaces. `tolerance`: length below which points count
@@ -31,13 +31,9 @@ pub fn shadows(
             [false, false] => continue,
             [true, true] => source,
             [first, _] => {
-                let crossing =
-                    source[0] + (source[1] - source[0]) * (heights[0] / (heights[0] - heights[1]));
-                if first {
-                    [source[0], crossing]
-                } else {
-                    [crossing, source[1]]
-                }
+                let [p, q] = source;
+                let crossing = p + (q - p) * (heights[0] / (heights[0] - heights[1]));
+                if first { [p, crossing] } else { [crossing, q] }
             }
         };
         let Some(beyond) = HalfSpace::behind(cap[0], normal * side) else {
@@ -46,13 +42,12 @@ pub fn shadows(
         let mut bounds = vec![beyond];
         for k in 0..3 {
             let (from, to) = (cap[k], cap[(k + 1) % 3]);
-            for end in part {
-                let plane = HalfSpace::behind(from, (to - from).cross(end - from));
+            let [first, last] = part.each(|end| (from, (to - from).cross(end - from)));
+            let across = (part[0], (part[1] - part[0]).cross(from - part[0]));
+            for (point, normal) in [first, last, across] {
+                let plane = HalfSpace::behind(point, normal);
                 bounds.extend(plane.and_then(|p| separating(p, cap, part, tolerance)));
             }
-            let across = (part[1] - part[0]).cross(cap[k] - part[0]);
-            let plane = HalfSpace::behind(part[0], across);
-            bounds.extend(plane.and_then(|p| separating(p, cap, part, tolerance)));
         }
         found.push(bounds);
     }
@@ -66,14 +61,8 @@ fn separating(
     source: [DVec3; 2],
     tolerance: f64,
 ) -> Option<HalfSpace> {
-    let extremes = |points: &[DVec3]| {
-        let heights = points.iter().map(|&p| plane.excess(p));
-        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| {
-            (low.min(h), high.max(h))
-        })
-    };
-    let (cap_low, cap_high) = extremes(&cap);
-    let (source_low, source_high) = extremes(&source);
+    let [cap_low, cap_high] = math::range(cap.each(|p| plane.excess(p)));
+    let [source_low, source_high] = math::range(source.each(|p| plane.excess(p)));
     if cap_high <= tolerance && source_low >= -tolerance && cap_low < -tolerance {
         Some(plane)
     } else if cap_low >= -tolerance && source_high <= tolerance && cap_high > tolerance {

@@ -44,7 +44,7 @@ impl Volume {
         };
         let least = LEAST * (bound * bound * bound);
         let mut next = Vec::new();
-        for (i, prism) in around.prisms().iter().enumerate() {
+        for (i, prism) in around.prisms.iter().enumerate() {
             for normal in [prism.normal, -prism.normal] {
                 let cap = prism.points.each(|p| p + normal * bound);
                 for from in sources(around, i, source) {
@@ -97,7 +97,7 @@ impl Volume {
 /// The prisms inside the convex kernel.
 fn base(around: &Neighborhood, bound: f64, tolerance: f64) -> Vec<Polyhedron> {
     let mut polyhedra = Vec::new();
-    for prism in around.prisms() {
+    for prism in &around.prisms {
         let margin = DVec3::splat(2.0 * bound);
         let [a, b, c] = prism.points;
         let cuboid = Polyhedron::cuboid(a.min(b).min(c) - margin, a.max(b).max(c) + margin);
@@ -112,10 +112,10 @@ fn base(around: &Neighborhood, bound: f64, tolerance: f64) -> Vec<Polyhedron> {
 /// Where the faces stand that might pierce the caps of prism `i`.
 fn sources(around: &Neighborhood, i: usize, source: Source) -> Vec<[DVec3; 2]> {
     if source == Source::Edges {
-        return around.links().to_vec();
+        return around.links.to_vec();
     }
-    let face = &around.faces()[i];
-    let prism = &around.prisms()[i];
+    let face = &around.faces[i];
+    let prism = &around.prisms[i];
     let mut sources: Vec<[DVec3; 2]> = face.link().into_iter().collect();
     if sources.is_empty() {
         let apex = face.ends.iter().position(|&e| !e);
@@ -125,7 +125,7 @@ fn sources(around: &Neighborhood, i: usize, source: Source) -> Vec<[DVec3; 2]> {
     let inner: Vec<usize> = (0..3)
         .filter(|&k| face.ends[k] || face.ends[(k + 1) % 3])
         .collect();
-    for &[b, _] in around.links() {
+    for &[b, _] in &around.links {
         let own = face.points.contains(&b);
         if !own && inner.iter().any(|&k| prism.walls[k].excess(b) <= 0.0) {
             sources.push([b; 2]);

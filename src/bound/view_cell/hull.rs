@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::shape::FLATNESS;
+use super::{Shape, shape::FLATNESS};
 use crate::{
     Error, Result,
     num::{
@@ -16,12 +16,6 @@ use crate::{
         math::{length, unit},
     },
 };
-
-pub(super) struct Hull {
-    pub(super) corners: Vec<DVec3>,
-    pub(super) faces: Vec<Vec<u32>>,
-    pub(super) normals: Vec<DVec3>,
-}
 
 /// The points relative to the first, in units of their size (largest box side below 1).
 fn relative(points: &[DVec3]) -> Vec<DVec3> {
@@ -33,14 +27,12 @@ fn relative(points: &[DVec3]) -> Vec<DVec3> {
     // Halves: the difference itself could be infinite.
     let half = 0.5 * high - 0.5 * low;
     let frame = Frame::for_size(half.max_element());
-    let halves = points
-        .iter()
-        .map(|&p| frame.enter(0.5 * p - 0.5 * points[0]));
-    halves.collect()
+    let half = |&p: &DVec3| frame.enter(0.5 * p - 0.5 * points[0]);
+    points.iter().map(half).collect()
 }
 
-/// A checked polygon, and its normal by the right-hand rule.
-pub(super) fn polygon(corners: &[DVec3]) -> Result<(Vec<DVec3>, DVec3)> {
+/// A checked polygon with its normal by the right-hand rule.
+pub(super) fn polygon(corners: &[DVec3]) -> Result<Shape> {
     let refused = |what: String| Error::Usage(what);
     let p = relative(corners);
     // Newell's normal: twice the area, however the corners are chosen.
@@ -48,14 +40,11 @@ pub(super) fn polygon(corners: &[DVec3]) -> Result<(Vec<DVec3>, DVec3)> {
     for (i, &a) in p.iter().enumerate() {
         area += a.cross(p[(i + 1) % p.len()]);
     }
-    let normal = unit(area)
-        .filter(|_| length(area) > FLATNESS)
-        .ok_or_else(|| {
-            refused(
-                "the polygon has no area: its corners lie on a line or its sides cross; give a segment as the cell"
-                    .into(),
-            )
-        })?;
+    let Some(normal) = unit(area).filter(|_| length(area) > FLATNESS) else {
+        return Err(refused(
+            "the polygon has no area: its corners lie on a line or its sides cross; give a segment as the cell".into(),
+        ));
+    };
     if let Some(i) = p.iter().position(|q| q.dot(normal).abs() > FLATNESS) {
         return Err(refused(format!(
             "corner {i} of the polygon lies off the plane of the others; expected corners in one plane: give a \
@@ -85,11 +74,12 @@ pub(super) fn polygon(corners: &[DVec3]) -> Result<(Vec<DVec3>, DVec3)> {
                 .into(),
         ));
     }
-    Ok((kept, normal))
+    let corners = kept;
+    Ok(Shape::Polygon { corners, normal })
 }
 
 /// The convex hull of points that are not in one plane.
-pub(super) fn polyhedron(points: &[DVec3]) -> Result<Hull> {
+pub(super) fn polyhedron(points: &[DVec3]) -> Result<Shape> {
     let p = relative(points);
     let mut seen = BTreeSet::new();
     let (mut faces, mut normals) = (Vec::new(), Vec::new());
@@ -136,7 +126,7 @@ pub(super) fn polyhedron(points: &[DVec3]) -> Result<Hull> {
         let number = |q: &usize| kept.binary_search(q).map_or(0, |n| n as u32);
         face.iter().map(number).collect()
     };
-    Ok(Hull {
+    Ok(Shape::Polyhedron {
         faces: faces.iter().map(renumbered).collect(),
         corners: kept.iter().map(|&q| points[q]).collect(),
         normals,

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::hull;
 use crate::{
     Error, Result,
+    geometry::Box3,
     num::{
         Each, Frame,
         math::{length, unit},
@@ -111,8 +112,7 @@ impl ViewCell {
     /// is not finite, a corner off the plane of the others, no area, or a polygon that is not convex.
     pub fn polygon(corners: &[DVec3]) -> Result<Self> {
         corner_count(corners, 3, "polygon")?;
-        let (corners, normal) = hull::polygon(corners)?;
-        Ok(Self(Shape::Polygon { corners, normal }))
+        hull::polygon(corners).map(Self)
     }
 
     /// The plane through `point` across `normal`, which may have any length but 0.
@@ -132,12 +132,7 @@ impl ViewCell {
     /// one plane, or points so nearly in one plane that their faces cannot be told apart.
     pub fn polyhedron(points: &[DVec3]) -> Result<Self> {
         corner_count(points, 4, "polyhedron")?;
-        let hull = hull::polyhedron(points)?;
-        Ok(Self(Shape::Polyhedron {
-            corners: hull.corners,
-            faces: hull.faces,
-            normals: hull.normals,
-        }))
+        hull::polyhedron(points).map(Self)
     }
 
     /// A box with sides along the axes.
@@ -152,14 +147,7 @@ impl ViewCell {
                  point as the cell where it has no thickness"
             )));
         }
-        let corner = |i: u32| {
-            DVec3::new(
-                if i & 1 == 0 { low.x } else { high.x },
-                if i & 2 == 0 { low.y } else { high.y },
-                if i & 4 == 0 { low.z } else { high.z },
-            )
-        };
-        let corners: Vec<DVec3> = (0..8).map(corner).collect();
+        let corners: Vec<DVec3> = (0..8).map(|i| Box3 { low, high }.corner(i)).collect();
         Self::polyhedron(&corners)
     }
 
@@ -229,12 +217,10 @@ impl ViewCell {
 
 fn finite(vectors: &[DVec3], what: &str) -> Result<()> {
     if vectors.iter().all(|v| v.is_finite()) {
-        Ok(())
-    } else {
-        Err(Error::Usage(format!(
-            "{what} has a coordinate that is not finite; expected numbers"
-        )))
+        return Ok(());
     }
+    let told = format!("{what} has a coordinate that is not finite; expected numbers");
+    Err(Error::Usage(told))
 }
 
 /// The unit vector along `v`, whatever its length: scaled first, so that squares neither overflow nor vanish. A vector
@@ -254,21 +240,22 @@ fn direction_of(v: DVec3, what: &str) -> Result<DVec3> {
 
 fn corner_count(corners: &[DVec3], least: usize, what: &str) -> Result<()> {
     let n = corners.len();
+    let refused = |told: String| Err(Error::Usage(told));
     if !(least..=CORNER_LIMIT).contains(&n) {
-        return Err(Error::Usage(format!(
+        return refused(format!(
             "a {what} with {n} corners; expected {least} to {CORNER_LIMIT}"
-        )));
+        ));
     }
     if let Some(i) = corners.iter().position(|c| !c.is_finite()) {
-        return Err(Error::Usage(format!(
+        return refused(format!(
             "corner {i} of the {what} is not finite; expected numbers"
-        )));
+        ));
     }
     for (i, a) in corners.iter().enumerate() {
         if let Some(j) = corners[..i].iter().position(|b| a == b) {
-            return Err(Error::Usage(format!(
+            return refused(format!(
                 "corners {j} and {i} of the {what} are the same point; leave one out"
-            )));
+            ));
         }
     }
     Ok(())

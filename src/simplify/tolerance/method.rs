@@ -36,25 +36,13 @@ const WORK: usize = 1 << 17;
 const AHEAD: usize = 32;
 
 /// A new face would be too far from the faces before it.
-const TOO_FAR_AT_ONCE: Refusal = Refusal::Method(&Reason {
-    index: 0,
-    name: "local-bound",
-    is_bound: true,
-});
+const TOO_FAR_AT_ONCE: Refusal = Refusal::Method(&Reason::new(0, "local-bound", true));
 
 /// A new face would be too far from the original.
-const TOO_FAR: Refusal = Refusal::Method(&Reason {
-    index: 1,
-    name: "strays",
-    is_bound: true,
-});
+const TOO_FAR: Refusal = Refusal::Method(&Reason::new(1, "strays", true));
 
 /// A part of the original would be too far from the new mesh.
-const UNCOVERED: Refusal = Refusal::Method(&Reason {
-    index: 2,
-    name: "uncovers",
-    is_bound: true,
-});
+const UNCOVERED: Refusal = Refusal::Method(&Reason::new(2, "uncovers", true));
 
 /// The method on an original.
 #[derive(Clone, Debug)]
@@ -165,11 +153,8 @@ impl ToleranceMethod {
             let faces = site.star.faces.iter().filter(|f| f.survives);
             faces.map(|f| f.points_after(position))
         };
-        if self.local < f64::INFINITY
-            && !around
-                .of(site)
-                .is_some_and(|a| a.keeps(position - a.origin(), self.local))
-        {
+        let keeps = |a: &Neighborhood| a.keeps(position - a.origin(), self.local);
+        if self.local < f64::INFINITY && !around.of(site).is_some_and(keeps) {
             return Err(TOO_FAR_AT_ONCE);
         }
         if !self.surface.reaches(position, self.reach) {
@@ -185,12 +170,7 @@ impl ToleranceMethod {
     }
 
     /// The place of least cost in the tolerance volume of a star without boundary.
-    fn in_volume(
-        &self,
-        site: &Site<'_>,
-        objective: &Objective,
-        around: &mut Around,
-    ) -> Option<DVec3> {
+    fn in_volume(&self, site: &Site<'_>, of: &Objective, around: &mut Around) -> Option<DVec3> {
         let source = self.options.volume?;
         if !site.star.boundary.is_empty() {
             return None;
@@ -198,7 +178,7 @@ impl ToleranceMethod {
         let around = around.of(site)?;
         let bound = self.local.min(self.reach.length);
         let volume = Volume::new(around, bound, source, TOLERANCE * self.diagonal);
-        let (matrix, linear) = objective.quadratic();
+        let (matrix, linear) = of.quadratic();
         let place = volume.minimum(&Quadratic { matrix, linear })?;
         Some(place + around.origin())
     }
@@ -217,9 +197,8 @@ impl Around {
                 ends: [0, 1, 2].each(|k| f.at.contains(&k)),
             })
         };
-        let own = &mut self.0;
-        own.get_or_insert_with(|| Neighborhood::new(star.midpoint(), faces()))
-            .as_ref()
+        let around = || Neighborhood::new(star.midpoint(), faces());
+        self.0.get_or_insert_with(around).as_ref()
     }
 }
 
@@ -306,15 +285,10 @@ impl Method for ToleranceMethod {
         let corners = |f| live.points(f);
         coverage.gather(&own.removed, corners, self.reach, &mut own.trial);
         let fan = patch.added.iter().map(|f| patch.after(live, f));
-        let (removed, added) = (&own.removed, &own.added);
-        let reach = self.reach;
-        if own
-            .trial
-            .assign(removed, added, fan, reach, &mut self.change)
-        {
-            Review::Commit
-        } else {
-            Review::Outdated
+        let (removed, added, change) = (&own.removed, &own.added, &mut self.change);
+        match own.trial.assign(removed, added, fan, self.reach, change) {
+            true => Review::Commit,
+            false => Review::Outdated,
         }
     }
 

@@ -18,6 +18,7 @@ use crate::{
         Admitted, Estimates, LiveMesh, Method, MethodScratch, Patch, PatchFace, Plan, Proposal,
         Reason, Refusal, Site,
     },
+    geometry::Box3,
     num::Each,
 };
 
@@ -87,19 +88,15 @@ impl ViewBounded {
     /// [`Error::Internal`] where a collapse was committed that was never allowed.
     pub(in super::super) fn into_correspondence(self, live: &LiveMesh) -> Result<Correspondence> {
         if self.lost {
-            return Err(Error::Internal(
-                "a collapse was committed that has no map".into(),
-            ));
+            let told = "a collapse was committed that has no map";
+            return Err(Error::Internal(told.into()));
         }
-        let ids: Vec<u32> = (0..live.triangle_ids())
-            .filter(|&t| live.triangle(t).is_some())
-            .collect();
+        let ids = (0..live.triangle_ids()).filter(|&t| live.triangle(t).is_some());
         let (frame, origin) = (live.frame(), self.origin);
-        Ok(self.map.renumbered(
-            &ids,
-            |p| frame.leave(p + origin),
-            |x| frame.leave_length(x, 1),
-        ))
+        let units = |p| frame.leave(p + origin);
+        Ok(self
+            .map
+            .renumbered(ids, units, |x| frame.leave_length(x, 1)))
     }
 
     /// Whether the collapse to an admitted place keeps every point within the limit.
@@ -121,18 +118,10 @@ impl ViewBounded {
 }
 
 /// The faces before cannot be mapped onto the faces after: no disc, or folded.
-const NO_MAP: Refusal = Refusal::Method(&Reason {
-    index: 0,
-    name: "unmapped",
-    is_bound: false,
-});
+const NO_MAP: Refusal = Refusal::Method(&Reason::new(0, "unmapped", false));
 
 /// A point would be farther from its replacement than is allowed.
-const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason {
-    index: 1,
-    name: "bound",
-    is_bound: true,
-});
+const BOUND_EXCEEDED: Refusal = Refusal::Method(&Reason::new(1, "bound", true));
 
 /// Most faces around an edge that may collapse, its own counted at both ends: every piece of the map in them is cut along all of them.
 const STAR_LIMIT: usize = 64;
@@ -143,27 +132,16 @@ const FAR: f64 = 512.0;
 
 fn origin(live: &LiveMesh) -> DVec3 {
     let points = (0..live.triangle_ids()).filter_map(|t| live.points(t));
-    let bounds = points
-        .flatten()
-        .fold(None, |bounds: Option<(DVec3, DVec3)>, p| {
-            Some(bounds.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
-        });
-    let Some((low, high)) = bounds else {
+    let Some(Box3 { low, high }) = Box3::of(points.flatten()) else {
         return DVec3::ZERO;
     };
     let size = (high - low).max_element();
-    let along = |low: f64, high: f64| {
-        if low.abs().min(high.abs()) > FAR * size && (low < 0.0) == (high < 0.0) {
-            low
-        } else {
-            0.0
-        }
+    let along = |axis: usize| {
+        let (low, high) = (low[axis], high[axis]);
+        let far = low.abs().min(high.abs()) > FAR * size && (low < 0.0) == (high < 0.0);
+        if far { low } else { 0.0 }
     };
-    DVec3::new(
-        along(low.x, high.x),
-        along(low.y, high.y),
-        along(low.z, high.z),
-    )
+    DVec3::new(along(0), along(1), along(2))
 }
 
 /// The fan of a patch relative to `origin`, before or after it is committed.
@@ -222,14 +200,13 @@ impl Method for ViewBounded {
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (cost, position) in others {
+            let proposal = Proposal {
+                position,
+                primary: 0,
+                secondary: cost,
+            };
             match self.bounded(site, position, buffers) {
-                Ok(()) => {
-                    return Ok(Proposal {
-                        position,
-                        primary: 0,
-                        secondary: cost,
-                    });
-                }
+                Ok(()) => return Ok(proposal),
                 Err(reason) => refusal = reason,
             }
         }
