@@ -32,7 +32,7 @@ fn main() -> Result<()> {
     let write = |file: &str, mesh: &Mesh| io::write(Path::new(file), mesh).map(drop);
     let (mesh, cell, scene, viewers) = match *words {
         ["names"] => {
-            println!("{}", generate::NAMES.join("\n"));
+            println!("{}", generate::NAMED.map(|(name, _)| name).join("\n"));
             return Ok(());
         }
         ["mesh", name, file] => {

@@ -79,13 +79,8 @@ impl Box3 {
     /// False where a point is farther than `reach` from the box along an axis.
     #[inline]
     pub fn may_reach(&self, p: DVec3, reach: f64) -> bool {
-        let (below, above) = (self.low - p, p - self.high);
-        below.x <= reach
-            && below.y <= reach
-            && below.z <= reach
-            && above.x <= reach
-            && above.y <= reach
-            && above.z <= reach
+        let reach = DVec3::splat(reach);
+        (self.low - p).cmple(reach).all() && (p - self.high).cmple(reach).all()
     }
 }
 

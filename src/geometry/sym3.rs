@@ -10,14 +10,8 @@ impl Sym3 {
     /// The outer product `n n^T`.
     #[inline]
     pub fn outer(n: DVec3) -> Self {
-        Self([
-            n.x * n.x,
-            n.x * n.y,
-            n.x * n.z,
-            n.y * n.y,
-            n.y * n.z,
-            n.z * n.z,
-        ])
+        let DVec3 { x, y, z } = n;
+        Self([x * x, x * y, x * z, y * y, y * z, z * z])
     }
 
     /// The product with a vector.

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::math::scale_by_power_of_two;
+use super::{Each, math::scale_by_power_of_two};
 
 /// Floating-point type of the coordinates of a file; results are rounded to it *before* they are judged,
 /// so that the images which drove a choice are those of the file that is written.
@@ -49,13 +49,9 @@ pub struct Frame {
 impl Frame {
     /// The frame in which a length of `size` file units lies in [0.5, 1); the identity for 0 and non-finite sizes.
     pub fn for_size(size: f64) -> Self {
-        if size > 0.0 && size.is_finite() {
-            Self {
-                exponent: libm::frexp(size).1,
-            }
-        } else {
-            Self::default()
-        }
+        let usual = size > 0.0 && size.is_finite();
+        let exponent = if usual { libm::frexp(size).1 } else { 0 };
+        Self { exponent }
     }
 
     /// From file units to frame units; exact.
@@ -81,22 +77,15 @@ impl Frame {
     /// The frame position nearest to `p` that `precision` can store in file units; `None` where it is not finite.
     pub fn round(self, p: DVec3, precision: Precision) -> Option<DVec3> {
         let file = precision.round_vector(self.leave(p));
-        if file.is_finite() {
-            Some(self.enter(file))
-        } else {
-            None
-        }
+        file.is_finite().then(|| self.enter(file))
     }
 
     fn scaled(self, p: DVec3, exponent: i32) -> DVec3 {
         if exponent == 0 {
             return p;
         }
-        DVec3::new(
-            scale_by_power_of_two(p.x, exponent),
-            scale_by_power_of_two(p.y, exponent),
-            scale_by_power_of_two(p.z, exponent),
-        )
+        let scaled = p.to_array().each(|x| scale_by_power_of_two(x, exponent));
+        DVec3::from_array(scaled)
     }
 }
 
@@ -117,17 +106,12 @@ mod tests {
     #[test]
     fn rounding_in_the_frame_is_rounding_in_file_units() {
         let frame = Frame::for_size(1e-42);
+        // Subnormal in f32.
         let p = frame.round(frame.enter(DVec3::splat(1.235e-42)), Precision::F32);
-        assert_eq!(
-            p.map(|p| frame.leave(p)),
-            Some(DVec3::splat(f64::from(1.235e-42_f32))),
-            "subnormal in f32"
-        );
+        let expected = DVec3::splat(f64::from(1.235e-42_f32));
+        assert_eq!(p.map(|p| frame.leave(p)), Some(expected));
+        // Beyond the largest f32.
         let huge = Frame::for_size(1e38);
-        assert_eq!(
-            huge.round(DVec3::splat(8.0), Precision::F32),
-            None,
-            "beyond the largest f32"
-        );
+        assert_eq!(huge.round(DVec3::splat(8.0), Precision::F32), None);
     }
 }

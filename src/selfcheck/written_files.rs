@@ -22,10 +22,8 @@ const ENCODINGS: [(&str, Encoding); 6] = [
 
 /// The content of every generated mesh.
 pub(super) fn generators(collector: &mut Collector) -> Result<()> {
-    for &name in generate::NAMES {
-        if let Some(mesh) = generate::by_name(name) {
-            collector.mesh(name, &mesh);
-        }
+    for (name, make) in generate::NAMED {
+        collector.mesh(name, &make());
     }
     Ok(())
 }

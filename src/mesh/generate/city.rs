@@ -51,11 +51,8 @@ fn blocks(count: u32, random: &mut Pcg32) -> Vec<[f64; 2]> {
     (1..=count)
         .map(|i| {
             let block = [start, start + 1.0 + 0.6 * random.unit()];
-            start = if i.is_multiple_of(WIDE_EVERY) {
-                block[1] + WIDE
-            } else {
-                start + PITCH
-            };
+            let wide = i.is_multiple_of(WIDE_EVERY);
+            start = if wide { block[1] + WIDE } else { start + PITCH };
             block
         })
         .collect()
@@ -63,12 +60,8 @@ fn blocks(count: u32, random: &mut Pcg32) -> Vec<[f64; 2]> {
 
 /// Four walls and a roof.
 fn building(low: [f64; 2], high: [f64; 2], height: f64) -> Surface {
-    let ground = [
-        [low[0], low[1]],
-        [high[0], low[1]],
-        [high[0], high[1]],
-        [low[0], high[1]],
-    ];
+    let ([left, front], [right, back]) = (low, high);
+    let ground = [[left, front], [right, front], [right, back], [left, back]];
     let at = |z: f64| ground.each(|[x, y]| rounded(DVec3::new(x, y, z)));
     let mut positions = at(0.0).to_vec();
     positions.extend(at(height));
@@ -108,12 +101,8 @@ pub fn trees(count: u32, radius: f64) -> Mesh {
         let away = place / crate::num::math::sqrt(squared);
         let half = DVec3::new(-away.y, away.x, 0.0) * (height / 4.0);
         let up = DVec3::new(0.0, 0.0, height);
-        let corners = [
-            place + half,
-            place - half,
-            place - half + up,
-            place + half + up,
-        ];
+        let (a, b) = (place + half, place - half);
+        let corners = [a, b, b + up, a + up];
         let tree = Surface {
             positions: corners.each(rounded).to_vec(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{attributes, finish};
 use crate::{
-    mesh::{ChannelKind, Materials, Mesh, MeshParts},
+    mesh::{ChannelKind, Mesh, MeshParts},
     num::Each,
 };
 
@@ -12,15 +12,9 @@ use crate::{
 /// for every side (`x-`, `x+`, `y-`, ...). Every side shows the whole texture, v up.
 pub fn cube() -> Mesh {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    let mut parts = MeshParts {
-        materials: Materials {
-            names: ["x-", "x+", "y-", "y+", "z-", "z+"]
-                .map(String::from)
-                .to_vec(),
-            ..Materials::default()
-        },
-        ..MeshParts::default()
-    };
+    let mut parts = MeshParts::default();
+    let names = ["x-", "x+", "y-", "y+", "z-", "z+"];
+    parts.materials.names = names.map(String::from).to_vec();
     for bits in 0..8 {
         let sign = |axis: u32| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
         parts.positions.push(DVec3::new(sign(0), sign(1), sign(2)));

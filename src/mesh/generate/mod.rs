@@ -35,43 +35,28 @@ pub use probe::probe;
 pub use sphere::{icosphere, shells, tetrahedron};
 pub use torus::{interlocking_tori, textured_torus, torus};
 
-/// The names that [`by_name`] knows.
-pub const NAMES: &[&str] = &[
-    "tetrahedron",
-    "cube",
-    "icosphere",
-    "torus",
-    "plane",
-    "terrain",
-    "waves",
-    "shells",
-    "tori",
-    "engine",
-    "textured-torus",
-    "probe",
-    "motor",
-    "encased",
+/// Meshes by name, of a size that suits a demonstration.
+pub const NAMED: [(&str, fn() -> Mesh); 14] = [
+    ("tetrahedron", tetrahedron),
+    ("cube", cube),
+    ("icosphere", || icosphere(4)),
+    ("torus", || torus(1.0, 0.4, 96, 48)),
+    ("plane", || grid(32, 32, Height::Flat)),
+    ("terrain", || grid(64, 64, Height::Polynomial)),
+    ("waves", || grid(64, 64, Height::Waves)),
+    ("shells", || shells(4, 3)),
+    ("tori", || interlocking_tori(64, 32)),
+    ("engine", || engine(2)),
+    ("textured-torus", || textured_torus(96, 48)),
+    ("probe", probe),
+    ("motor", || motor(1)),
+    ("encased", || encased(2)),
 ];
 
-/// The mesh of a name in [`NAMES`], of a size that suits a demonstration; `None` for other names.
+/// The mesh of a name in [`NAMED`]; `None` for other names.
 pub fn by_name(name: &str) -> Option<Mesh> {
-    Some(match name {
-        "tetrahedron" => tetrahedron(),
-        "cube" => cube(),
-        "icosphere" => icosphere(4),
-        "torus" => torus(1.0, 0.4, 96, 48),
-        "plane" => grid(32, 32, Height::Flat),
-        "terrain" => grid(64, 64, Height::Polynomial),
-        "waves" => grid(64, 64, Height::Waves),
-        "shells" => shells(4, 3),
-        "tori" => interlocking_tori(64, 32),
-        "engine" => engine(2),
-        "textured-torus" => textured_torus(96, 48),
-        "probe" => probe(),
-        "motor" => motor(1),
-        "encased" => encased(2),
-        _ => return None,
-    })
+    let found = NAMED.iter().find(|(known, _)| *known == name);
+    found.map(|(_, make)| make())
 }
 
 /// A surface in the making.

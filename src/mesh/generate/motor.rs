@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::{
     Surface,
     motor_inside::add_inner_parts,
-    solids::{cavity, round_box, turned, wire},
+    solids::{cavity, profile, round_box, turned, wire},
 };
 use crate::{mesh::Mesh, num::math};
 
@@ -110,107 +110,55 @@ fn housings(surface: &mut Surface, n: Detail) {
 
 /// Pulleys, alternator and flywheel, at the ends of the shafts.
 fn pulleys(surface: &mut Surface, n: Detail) {
-    let groove = |r: f64, w: f64| {
-        [
-            (0.0, 0.0),
-            (0.4 * r, 0.0),
-            (0.45 * r, 0.2 * w),
-            (r, 0.2 * w),
-            (r, 0.35 * w),
-            (0.85 * r, 0.5 * w),
-            (0.85 * r, 0.7 * w),
-            (r, 0.85 * w),
-            (r, w),
-            (0.3 * r, w),
-            (0.25 * r, 1.2 * w),
-            (0.0, 1.2 * w),
-        ]
-    };
+    // With a groove, as shares of radius and width.
+    let radii = [
+        0.0, 0.4, 0.45, 1.0, 1.0, 0.85, 0.85, 1.0, 1.0, 0.3, 0.25, 0.0,
+    ];
+    let heights = [0.0, 0.0, 0.2, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0, 1.0, 1.2, 1.2];
+    let groove = |r: f64, w: f64| profile(&radii.map(|x| x * r), &heights.map(|x| x * w));
     // Pulleys of crankshaft, water pump and alternator at the front.
     for (r, y, z) in [(0.19, 0.0, -0.25), (0.14, 0.0, 0.24), (0.09, 0.56, 0.1)] {
         let pulley = turned(&groove(r, 0.09), n.of(20), round);
         surface.add(&pulley, |p| lengthwise(p) + DVec3::new(1.03, y, z));
     }
-    let alternator = [
-        (0.0, 0.0),
-        (0.08, 0.0),
-        (0.12, 0.05),
-        (0.12, 0.3),
-        (0.08, 0.34),
-        (0.0, 0.34),
-    ];
-    let finned = turned(&alternator, n.of(24), toothed(12.0, 0.03));
+    let radii = [0.0, 0.08, 0.12, 0.12, 0.08, 0.0];
+    let heights = [0.0, 0.0, 0.05, 0.3, 0.34, 0.34];
+    let finned = turned(&profile(&radii, &heights), n.of(24), toothed(12.0, 0.03));
     surface.add(&finned, |p| lengthwise(p) + DVec3::new(0.66, 0.57, 0.1));
-    let flywheel = [
-        (0.0, 0.0),
-        (0.36, 0.0),
-        (0.4, 0.03),
-        (0.4, 0.1),
-        (0.3, 0.13),
-        (0.0, 0.13),
-    ];
-    let housing = turned(&flywheel, n.of(28), round);
+    let radii = [0.0, 0.36, 0.4, 0.4, 0.3, 0.0];
+    let heights = [0.0, 0.0, 0.03, 0.1, 0.13, 0.13];
+    let housing = turned(&profile(&radii, &heights), n.of(28), round);
     surface.add(&housing, |p| lengthwise(p) + DVec3::new(-1.16, 0.0, -0.1));
 }
 
 /// Starter, oil filter and oil cap.
 fn fittings(surface: &mut Surface, n: Detail) {
-    let starter = [
-        (0.0, 0.0),
-        (0.06, 0.0),
-        (0.08, 0.03),
-        (0.08, 0.3),
-        (0.05, 0.34),
-        (0.0, 0.34),
-    ];
-    let starter = turned(&starter, n.of(14), round);
+    let radii = [0.0, 0.06, 0.08, 0.08, 0.05, 0.0];
+    let heights = [0.0, 0.0, 0.03, 0.3, 0.34, 0.34];
+    let starter = turned(&profile(&radii, &heights), n.of(14), round);
     surface.add(&starter, |p| lengthwise(p) + DVec3::new(-0.95, -0.57, -0.3));
-    let filter = [
-        (0.0, 0.0),
-        (0.06, 0.0),
-        (0.1, 0.02),
-        (0.1, 0.18),
-        (0.08, 0.22),
-        (0.0, 0.22),
-    ];
-    let filter = turned(&filter, n.of(16), toothed(16.0, 0.015));
+    let radii = [0.0, 0.06, 0.1, 0.1, 0.08, 0.0];
+    let heights = [0.0, 0.0, 0.02, 0.18, 0.22, 0.22];
+    let filter = turned(&profile(&radii, &heights), n.of(16), toothed(16.0, 0.015));
     surface.add(&filter, |p| crosswise(p) + DVec3::new(-0.1, 0.46, -0.27));
-    let cap = [
-        (0.0, 0.0),
-        (0.07, 0.0),
-        (0.08, 0.02),
-        (0.08, 0.05),
-        (0.0, 0.06),
-    ];
-    let cap = turned(&cap, n.of(16), toothed(8.0, 0.05));
+    let radii = [0.0, 0.07, 0.08, 0.08, 0.0];
+    let heights = [0.0, 0.0, 0.02, 0.05, 0.06];
+    let cap = turned(&profile(&radii, &heights), n.of(16), toothed(8.0, 0.05));
     surface.add(&cap, |p| p + DVec3::new(-0.8, 0.2, 0.872));
 }
 
 /// Plugs in the head cover, and bolts along it and the pan.
 fn plugs_and_bolts(surface: &mut Surface, n: Detail) {
-    let plug = [
-        (0.0, 0.0),
-        (0.035, 0.0),
-        (0.035, 0.03),
-        (0.02, 0.04),
-        (0.02, 0.12),
-        (0.025, 0.13),
-        (0.025, 0.16),
-        (0.0, 0.17),
-    ];
-    let plug = turned(&plug, n.of(12), hexagon);
+    let radii = [0.0, 0.035, 0.035, 0.02, 0.02, 0.025, 0.025, 0.0];
+    let heights = [0.0, 0.0, 0.03, 0.04, 0.12, 0.13, 0.16, 0.17];
+    let plug = turned(&profile(&radii, &heights), n.of(12), hexagon);
     for x in CYLINDERS {
         surface.add(&plug, |p| p + DVec3::new(x, 0.0, 0.914));
     }
     // Bolts along both sides of the head cover and of the pan.
-    let bolt = [
-        (0.0, 0.0),
-        (0.022, 0.0),
-        (0.022, 0.02),
-        (0.018, 0.025),
-        (0.0, 0.025),
-    ];
-    let bolt = turned(&bolt, n.of(6), hexagon);
+    let radii = [0.0, 0.022, 0.022, 0.018, 0.0];
+    let heights = [0.0, 0.0, 0.02, 0.025, 0.025];
+    let bolt = turned(&profile(&radii, &heights), n.of(6), hexagon);
     for k in 0..5_i32 {
         let x = 0.4 * f64::from(k - 2);
         for side in [-1.0, 1.0] {
@@ -238,15 +186,9 @@ fn manifolds(surface: &mut Surface, n: Detail) {
                 .collect();
             surface.add(&wire(&path, radius, n.of(10)), |p| p);
         }
-        let collector = [
-            (0.0, -0.85),
-            (0.06, -0.85),
-            (0.075, -0.82),
-            (0.075, 0.82),
-            (0.06, 0.85),
-            (0.0, 0.85),
-        ];
-        let collector = turned(&collector, n.of(12), round);
+        let radii = [0.0, 0.06, 0.075, 0.075, 0.06, 0.0];
+        let heights = [-0.85, -0.85, -0.82, 0.82, 0.85, 0.85];
+        let collector = turned(&profile(&radii, &heights), n.of(12), round);
         let (y, z) = (0.43 + reach, 0.3 + drop - 0.085);
         surface.add(&collector, |p| lengthwise(p) + DVec3::new(0.0, side * y, z));
     }

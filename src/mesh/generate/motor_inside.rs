@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     Surface,
     motor::{CYLINDERS, Detail, crosswise, lengthwise, round, toothed},
-    solids::{hollow, refined, round_box, turned, wire},
+    solids::{hollow, profile, refined, round_box, turned, wire},
 };
 use crate::num::math;
 
@@ -21,18 +21,9 @@ pub(super) fn add_inner_parts(surface: &mut Surface, n: Detail) {
 
 /// A part of the crankshaft with a groove for oil: radius and length.
 fn journal([r, l]: [f64; 2], n: Detail) -> Surface {
-    let oil = 0.85 * r;
-    let half = 0.5 * l;
-    let profile = [
-        (0.0, -half),
-        (r, -half),
-        (r, -0.1 * l),
-        (oil, 0.0),
-        (r, 0.1 * l),
-        (r, half),
-        (0.0, half),
-    ];
-    turned(&profile, n.of(14), round)
+    let radii = [0.0, 1.0, 1.0, 0.85, 1.0, 1.0, 0.0].map(|x| x * r);
+    let heights = [-0.5, -0.5, -0.1, 0.0, 0.1, 0.5, 0.5].map(|x| x * l);
+    turned(&profile(&radii, &heights), n.of(14), round)
 }
 
 /// Radius and height along a piston with three grooves for rings.
@@ -40,12 +31,8 @@ fn piston_profile() -> Vec<(f64, f64)> {
     let mut profile = vec![(0.0, 0.0), (0.1, 0.0), (0.13, -0.06), (0.146, -0.06)];
     for k in 0..3_i32 {
         let z = 0.01 + 0.025 * f64::from(k);
-        profile.extend([
-            (0.146, z),
-            (0.136, z),
-            (0.136, z + 0.012),
-            (0.146, z + 0.012),
-        ]);
+        let top = z + 0.012;
+        profile.extend([(0.146, z), (0.136, z), (0.136, top), (0.146, top)]);
     }
     profile.extend([(0.146, 0.1), (0.12, 0.1), (0.08, 0.085), (0.0, 0.08)]);
     profile
@@ -55,11 +42,8 @@ fn piston_profile() -> Vec<(f64, f64)> {
 fn bottom_end(surface: &mut Surface, n: Detail) {
     let liner = hollow([0.152, 0.17], [-0.08, 0.38], n.of(20));
     let piston = turned(&piston_profile(), n.of(20), round);
-    let pin = turned(
-        &[(0.0, -0.09), (0.02, -0.09), (0.02, 0.09), (0.0, 0.09)],
-        n.of(10),
-        round,
-    );
+    let pin = [(0.0, -0.09), (0.02, -0.09), (0.02, 0.09), (0.0, 0.09)];
+    let pin = turned(&pin, n.of(10), round);
     let shank = round_box(DVec3::new(0.012, 0.025, 0.1), 0.01, n.of(2));
     let web = [
         (0.0, -0.016),
@@ -81,7 +65,8 @@ fn bottom_end(surface: &mut Surface, n: Detail) {
         surface.add(&shank, |p| p + DVec3::new(x, 0.0, top - 0.215));
         let crank = -0.25 + throw;
         surface.add(&ear, |p| lengthwise(p) + DVec3::new(x, 0.0, crank + 0.02));
-        surface.add(&journal([0.038, 0.09], n), |p| {
+        let journal = journal([0.038, 0.09], n);
+        surface.add(&journal, |p| {
             lengthwise(p) + DVec3::new(x, 0.0, crank + 0.02)
         });
         for side in [-1.0, 1.0] {
@@ -91,27 +76,17 @@ fn bottom_end(surface: &mut Surface, n: Detail) {
             });
         }
     }
+    let journal = journal([0.05, 0.2], n);
     for x in [-0.85, -0.44, 0.0, 0.44] {
-        surface.add(&journal([0.05, 0.2], n), |p| {
-            lengthwise(p) + DVec3::new(x, 0.0, -0.25)
-        });
+        surface.add(&journal, |p| lengthwise(p) + DVec3::new(x, 0.0, -0.25));
     }
 }
 
 /// Timing gears at the front, oil pump at the back.
 fn gears(surface: &mut Surface, n: Detail) {
-    let disc = |r: f64| {
-        [
-            (0.0, -0.03),
-            (0.5 * r, -0.03),
-            (0.55 * r, -0.015),
-            (r, -0.02),
-            (r, 0.02),
-            (0.55 * r, 0.015),
-            (0.5 * r, 0.03),
-            (0.0, 0.03),
-        ]
-    };
+    let radii = [0.0, 0.5, 0.55, 1.0, 1.0, 0.55, 0.5, 0.0];
+    let heights = [-0.03, -0.03, -0.015, -0.02, 0.02, 0.015, 0.03, 0.03];
+    let disc = |r: f64| profile(&radii.map(|x| x * r), &heights);
     for (r, teeth, x, y, z) in [
         (0.08, 20.0, 0.88, 0.0, -0.28),
         (0.12, 30.0, 0.88, 0.12, -0.1),
@@ -149,24 +124,12 @@ fn valve_train(surface: &mut Surface, n: Detail) {
     };
     let shaft = turned(&refined(&shaft, n.of(64)), n.of(12), lobed);
     surface.add(&shaft, |p| lengthwise(p) + DVec3::new(0.0, 0.0, 0.745));
-    let valve = [
-        (0.0, 0.0),
-        (0.05, 0.0),
-        (0.05, 0.006),
-        (0.02, 0.025),
-        (0.01, 0.04),
-        (0.01, 0.15),
-        (0.0, 0.15),
-    ];
-    let valve = turned(&valve, n.of(12), round);
-    let keeper = [
-        (0.0, 0.0),
-        (0.035, 0.0),
-        (0.035, 0.01),
-        (0.02, 0.018),
-        (0.0, 0.018),
-    ];
-    let keeper = turned(&keeper, n.of(14), round);
+    let radii = [0.0, 0.05, 0.05, 0.02, 0.01, 0.01, 0.0];
+    let heights = [0.0, 0.0, 0.006, 0.025, 0.04, 0.15, 0.15];
+    let valve = turned(&profile(&radii, &heights), n.of(12), round);
+    let radii = [0.0, 0.035, 0.035, 0.02, 0.0];
+    let heights = [0.0, 0.0, 0.01, 0.018, 0.018];
+    let keeper = turned(&profile(&radii, &heights), n.of(14), round);
     let turns = 4.5;
     let steps = n.of(48);
     let helix: Vec<DVec3> = (0..=steps)

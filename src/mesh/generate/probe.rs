@@ -21,30 +21,24 @@ pub fn probe() -> Mesh {
     scene.add(&tetrahedral_surface(), |p| p * 0.45);
     // Occlusion and an open boundary.
     let sheet = grid_surface(4, 4, Height::Polynomial);
-    scene.add(&sheet, |p| {
-        DVec3::new(p.x * 0.5 + 0.4, p.y * 0.5, p.z * 0.5 + 0.7)
-    });
-    scene.add(&round_surface(0.8, 0.06, 12, 5), |p| {
-        DVec3::new(p.z, p.x, p.y)
-    });
+    let placed = |p: DVec3| DVec3::new(p.x * 0.5 + 0.4, p.y * 0.5, p.z * 0.5 + 0.7);
+    scene.add(&sheet, placed);
+    let ring = round_surface(0.8, 0.06, 12, 5);
+    scene.add(&ring, |p| DVec3::new(p.z, p.x, p.y));
     slivers(&mut scene);
     // Equal depth: the same faces again, reversed, and from vertices of their own.
     let twice: Vec<[u32; 3]> = scene.triangles[..4].to_vec();
     scene.triangles.extend(&twice);
-    scene
-        .triangles
-        .extend(twice.iter().map(|&[a, b, c]| [a, c, b]));
-    scene.add(&sheet, |p| {
-        DVec3::new(p.x * 0.5 + 0.4, p.y * 0.5, p.z * 0.5 + 0.7)
-    });
+    let turned = twice.iter().map(|&[a, b, c]| [a, c, b]);
+    scene.triangles.extend(turned);
+    scene.add(&sheet, placed);
     // No area: a point, an edge, three corners in a line.
     let line = scene.positions.len() as u32;
     let points = [0.0, 0.5, 1.0].each(|t| DVec3::new(t, 0.75, -t));
     scene.positions.extend(points);
     let degenerate = [[0, 0, 0], [0, 1, 1], [0, 1, 2]];
-    scene
-        .triangles
-        .extend(degenerate.each(|t: [u32; 3]| t.each(|v| v + line)));
+    let degenerate = degenerate.each(|t: [u32; 3]| t.each(|v| v + line));
+    scene.triangles.extend(degenerate);
     cloud(&mut scene);
     scene.into_mesh()
 }
@@ -55,15 +49,11 @@ fn slivers(scene: &mut Surface) {
     scene.positions.push(DVec3::new(-1.2, -0.8, 0.4));
     for k in 0..=24 {
         let t = f64::from(k);
-        scene.positions.push(DVec3::new(
-            1.0 - 0.002 * t,
-            -0.9 + 0.000_05 * t * t,
-            0.4 - 0.002 * t,
-        ));
+        let (x, y) = (1.0 - 0.002 * t, -0.9 + 0.000_05 * t * t);
+        scene.positions.push(DVec3::new(x, y, 0.4 - 0.002 * t));
     }
-    scene
-        .triangles
-        .extend((1..=24).map(|k| [hub, hub + k, hub + k + 1]));
+    let fan = (1..=24).map(|k| [hub, hub + k, hub + k + 1]);
+    scene.triangles.extend(fan);
 }
 
 /// Random triangles through the whole scene.

@@ -104,11 +104,8 @@ pub(super) fn round_box(half: DVec3, radius: f64, steps: u32) -> Surface {
                         vertex(at)
                     };
                     let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-                    triangles.extend(if far {
-                        [[a, b, c], [a, c, d]]
-                    } else {
-                        [[a, c, b], [a, d, c]]
-                    });
+                    let inward = [[a, c, b], [a, d, c]];
+                    triangles.extend(if far { [[a, b, c], [a, c, d]] } else { inward });
                 }
             }
         }
@@ -136,6 +133,11 @@ fn lines(half: f64, radius: f64, steps: u32) -> Vec<f64> {
     lines.extend([-flat, flat]);
     lines.extend((1..=steps).map(bent));
     lines
+}
+
+/// The rows of a body to be [`turned`], by their radii and their heights.
+pub(super) fn profile(radii: &[f64], heights: &[f64]) -> Vec<(f64, f64)> {
+    radii.iter().copied().zip(heights.iter().copied()).collect()
 }
 
 /// Every line of a profile in `steps` parts.
@@ -169,19 +171,14 @@ fn capped(rings: &[Vec<DVec3>], start: Option<DVec3>, end: Option<DVec3>) -> Sur
     for (first, pole, up) in [(0, start, false), (top, end, true)] {
         let middle = surface.positions.len() as u32;
         surface.positions.extend(pole);
-        let sides = match pole {
-            Some(_) => 0..around,
-            None => 1..around.saturating_sub(1),
+        let (center, sides) = match pole {
+            Some(_) => (middle, 0..around),
+            None => (first, 1..around.saturating_sub(1)),
         };
         for k in sides {
-            let center = if pole.is_some() { middle } else { first };
             let (k, next) = (first + k, first + (k + 1) % around);
-            let face = if up {
-                [center, k, next]
-            } else {
-                [center, next, k]
-            };
-            surface.triangles.push(face);
+            let [from, to] = if up { [k, next] } else { [next, k] };
+            surface.triangles.push([center, from, to]);
         }
     }
     surface

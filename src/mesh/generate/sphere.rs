@@ -36,57 +36,32 @@ pub fn shells(count: u32, subdivisions: u32) -> Mesh {
 
 pub(super) fn tetrahedral_surface() -> Surface {
     Surface {
-        positions: vec![
-            DVec3::new(1.0, 1.0, 1.0),
-            DVec3::new(1.0, -1.0, -1.0),
-            DVec3::new(-1.0, 1.0, -1.0),
-            DVec3::new(-1.0, -1.0, 1.0),
-        ],
+        positions: [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+            .map(|(x, y)| DVec3::new(x, y, x * y))
+            .to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
     }
 }
 
 pub(super) fn spherical_surface(subdivisions: u32) -> Surface {
     let (o, i) = (1.0, GOLDEN);
-    let mut positions: Vec<DVec3> = [
-        [-o, i, 0.0],
-        [o, i, 0.0],
-        [-o, -i, 0.0],
-        [o, -i, 0.0],
-        [0.0, -o, i],
-        [0.0, o, i],
-        [0.0, -o, -i],
-        [0.0, o, -i],
-        [i, 0.0, -o],
-        [i, 0.0, o],
-        [-i, 0.0, -o],
-        [-i, 0.0, o],
+    // Three rectangles across each other.
+    let rectangle = [[-o, i, 0.0], [o, i, 0.0], [-o, -i, 0.0], [o, -i, 0.0]];
+    let mut positions = Vec::new();
+    for turn in 0..3 {
+        for mut corner in rectangle {
+            corner.rotate_right(turn);
+            positions.extend(math::unit(DVec3::from_array(corner)));
+        }
+    }
+    // Around the first corner, beside these, around the last one's opposite, beside those.
+    let mut triangles = [
+        [[0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11]],
+        [[1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6], [7, 1, 8]],
+        [[3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9]],
+        [[4, 9, 5], [2, 4, 11], [6, 2, 10], [8, 6, 7], [9, 8, 1]],
     ]
-    .into_iter()
-    .filter_map(|p| math::unit(DVec3::from_array(p)))
-    .collect();
-    let mut triangles = vec![
-        [0, 11, 5],
-        [0, 5, 1],
-        [0, 1, 7],
-        [0, 7, 10],
-        [0, 10, 11],
-        [1, 5, 9],
-        [5, 11, 4],
-        [11, 10, 2],
-        [10, 7, 6],
-        [7, 1, 8],
-        [3, 9, 4],
-        [3, 4, 2],
-        [3, 2, 6],
-        [3, 6, 8],
-        [3, 8, 9],
-        [4, 9, 5],
-        [2, 4, 11],
-        [6, 2, 10],
-        [8, 6, 7],
-        [9, 8, 1],
-    ];
+    .concat();
     for _ in 0..subdivisions.min(SUBDIVISION_LIMIT) {
         subdivision::split(&mut positions, &mut triangles);
     }

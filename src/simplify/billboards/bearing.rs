@@ -37,17 +37,16 @@ pub(super) struct Turn {
 impl Bearing {
     /// Planes across the direction of projection.
     pub(super) fn across(normal: DVec2) -> Self {
-        Self {
-            normal,
-            along: normal,
-        }
+        let along = normal;
+        Self { normal, along }
     }
 
     /// By the angle of the normal and of the direction from it; 0 for planes across the direction.
     fn at(angle: f64, slant: f64) -> Self {
         let unit = |angle: f64| DVec2::new(math::cos(angle), math::sin(angle));
         let normal = unit(angle);
-        let along = if slant == 0.0 {
+        let straight = slant == 0.0;
+        let along = if straight {
             normal
         } else {
             unit(angle + slant)
@@ -58,11 +57,11 @@ impl Bearing {
     /// Turned; `None` where planes come too close to the direction.
     pub(super) fn turned(self, by: Turn) -> Option<Self> {
         let angle = math::atan2(self.normal.y, self.normal.x);
-        let slant = math::atan2(
+        let (across, along) = (
             self.normal.perp_dot(self.along),
             self.normal.dot(self.along),
         );
-        let slant = slant + by.slant;
+        let slant = math::atan2(across, along) + by.slant;
         (slant.abs() < STEEPEST).then(|| Self::at(angle + by.whole, slant))
     }
 }
@@ -114,10 +113,8 @@ pub(super) fn grid(faces: &[PlanFace], options: &BillboardOptions) -> Vec<Bearin
         .collect();
     groups.sort_by_key(|&(walls, _)| std::cmp::Reverse(walls));
     groups.truncate(count as usize);
-    let walls = groups
-        .into_iter()
-        .map(|(_, normal)| Bearing::across(normal));
-    grid.chain(walls).collect()
+    let walls = groups.into_iter().map(|(_, normal)| normal);
+    grid.chain(walls.map(Bearing::across)).collect()
 }
 
 #[cfg(test)]
@@ -146,12 +143,9 @@ mod tests {
                     assert!(wanted.abs() > STEEPEST - 1e-9);
                     continue;
                 };
-                assert!(
-                    (angle(turned) - wanted).abs() < 1e-12,
-                    "{bearing:?} {turned:?}"
-                );
                 let turn = bearing.normal.angle_to(turned.normal);
-                assert!((turn - whole).abs() < 1e-12, "{bearing:?} {turned:?}");
+                let off = (angle(turned) - wanted).abs().max((turn - whole).abs());
+                assert!(off < 1e-12, "{bearing:?} {turned:?}");
                 assert!(turned.normal.dot(turned.along) > 0.16);
             }
         }

@@ -73,8 +73,8 @@ pub fn billboards(
     let (mut slabs, alone) = select(&faces, &tree, &scene.plan_cell, options, progress)?;
     for number in alone {
         match own_plane(&faces[number as usize]) {
-            Some((normal, rho)) => slabs.push(Slab {
-                bearing: Bearing::across(normal),
+            Some((bearing, rho)) => slabs.push(Slab {
+                bearing,
                 rho,
                 faces: vec![number],
             }),
@@ -84,13 +84,10 @@ pub fn billboards(
     let mut quads = Vec::new();
     let vertical = parallel::map_slice(&slabs, |slab| scene.vertical(slab, &faces, &tree));
     for (slab, quad) in slabs.iter().zip(vertical) {
+        let triangles = |&f: &u32| &faces[f as usize].triangles;
         match quad {
             Some(quad) => quads.push(quad),
-            None => kept.extend(
-                slab.faces
-                    .iter()
-                    .flat_map(|&f| &faces[f as usize].triangles),
-            ),
+            None => kept.extend(slab.faces.iter().flat_map(triangles)),
         }
     }
     quads.extend(scene.horizontal(&flat));
@@ -100,9 +97,8 @@ pub fn billboards(
     let displacements = parallel::map_slice(&quads, |quad| {
         displacement(mesh, quad, &scene.plan_cell, options.up, eyes)
     });
-    let displacement = displacements
-        .into_iter()
-        .fold(Displacement::default(), Displacement::and);
+    let (none, all) = (Displacement::default(), displacements.into_iter());
+    let displacement = all.fold(none, Displacement::and);
     Ok(Cloud {
         quads,
         kept,
@@ -111,14 +107,13 @@ pub fn billboards(
 }
 
 /// The vertical plane that a wall stands in.
-fn own_plane(face: &PlanFace) -> Option<(DVec2, f64)> {
+fn own_plane(face: &PlanFace) -> Option<(Bearing, f64)> {
     let [a, b] = face.segments[0];
     let across = (b - a).perp();
     let length = math::sqrt(across.dot(across));
-    (face.is_wall() && length > 0.0).then(|| {
-        let normal = across / length;
-        (normal, ((a + b) / 2.0).dot(normal))
-    })
+    let normal = across / length;
+    let plane = (Bearing::across(normal), ((a + b) / 2.0).dot(normal));
+    (face.is_wall() && length > 0.0).then_some(plane)
 }
 
 impl Scene<'_> {
@@ -126,30 +121,24 @@ impl Scene<'_> {
     fn vertical(&self, slab: &Slab, faces: &[PlanFace], tree: &PlanTree) -> Option<Quad> {
         let up = self.options.up;
         let Bearing { normal, along } = slab.bearing;
-        let (towards, along) = if self.plan_cell.somewhere().dot(normal) < slab.rho {
-            (-normal, -along)
-        } else {
-            (normal, along)
-        };
+        let behind = self.plan_cell.somewhere().dot(normal) < slab.rho;
+        let [towards, along] = [normal, along].each(|d| if behind { -d } else { d });
         let right = towards.perp();
         let (at, steep) = (normal * slab.rho, along.dot(towards));
         let axes = [right, DVec2::ZERO, towards].each(|a| up.place(a, 0.0));
         let axes = [axes[0], up.place(DVec2::ZERO, 1.0), axes[2]];
-        let triangles = |numbers: &mut dyn Iterator<Item = u32>| {
-            let mut all: Vec<u32> = numbers
-                .flat_map(|f| faces[f as usize].triangles.iter().copied())
-                .collect();
+        let triangles = |numbers: &[u32]| {
+            let all = numbers.iter().flat_map(|&f| &faces[f as usize].triangles);
+            let mut all: Vec<u32> = all.copied().collect();
             all.sort_unstable();
             all
         };
-        let replaces = triangles(&mut slab.faces.iter().copied());
+        let replaces = triangles(&slab.faces);
         let origin = up.place(at, 0.0);
         let mut quad = self.framed(origin, axes, up.place(along, 0.0), replaces)?;
         let limits = self.plan_cell.limits(slab.bearing, self.options.limit);
-        let (low, high) = (
-            quad.corner.dot(axes[0]),
-            quad.corner.dot(axes[0]) + quad.size[0],
-        );
+        let low = quad.corner.dot(axes[0]);
+        let high = low + quad.size[0];
         let shown = |&f: &u32| {
             let face = &faces[f as usize];
             let place = |&p: &DVec2| (p - along * ((p - at).dot(towards) / steep)).dot(right);
@@ -161,17 +150,15 @@ impl Scene<'_> {
         near.extend_from_slice(&slab.faces);
         near.sort_unstable();
         near.dedup();
-        quad.drawn = triangles(&mut near.into_iter().filter(shown));
+        near.retain(shown);
+        quad.drawn = triangles(&near);
         Some(quad)
     }
 
     /// The quads of horizontal faces.
     fn horizontal(&self, faces: &[PlanFace]) -> Vec<Quad> {
         let up = self.options.up;
-        let mut triangles: Vec<u32> = faces
-            .iter()
-            .flat_map(|f| f.triangles.iter().copied())
-            .collect();
+        let mut triangles: Vec<u32> = faces.iter().flat_map(|f| f.triangles.clone()).collect();
         triangles.sort_unstable();
         let bound = |&t: &u32| {
             let interval = flat::heights(self.mesh, t, self.cell, up, self.options.limit);
@@ -180,22 +167,12 @@ impl Scene<'_> {
         let bounded: Vec<(Interval, u32)> = parallel::map_slice(&triangles, bound);
         let levels = if self.options.any_height {
             let height = |&t: &u32| up.height(self.mesh.corners(t as usize)[0]);
-            let (low, high) = (
-                triangles.iter().map(height).fold(f64::INFINITY, f64::min),
-                triangles
-                    .iter()
-                    .map(height)
-                    .fold(f64::NEG_INFINITY, f64::max),
-            );
-            let one = Level {
-                height: low + (high - low) / 2.0,
-                triangles,
-            };
-            if one.triangles.is_empty() {
-                Vec::new()
-            } else {
-                vec![one]
-            }
+            let [low, high] = math::range(triangles.iter().map(height));
+            let height = low + (high - low) / 2.0;
+            let some = !triangles.is_empty();
+            some.then_some(Level { height, triangles })
+                .into_iter()
+                .collect()
         } else {
             flat::levels(bounded.clone())
         };
@@ -227,11 +204,7 @@ impl Scene<'_> {
             let corners = replaces.iter().flat_map(|&t| self.mesh.corners(t as usize));
             corners.map(|p| project(p, origin, axes[2], along))
         };
-        let range = |axis: DVec3| {
-            corners().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
-                [low.min(p.dot(axis)), high.max(p.dot(axis))]
-            })
-        };
+        let range = |axis: DVec3| math::range(corners().map(|p| p.dot(axis)));
         let [[left, right], [bottom, top]] = [range(axes[0]), range(axes[1])];
         let size = [right - left, top - bottom];
         if !(size[0] > 0.0 && size[1] > 0.0) {

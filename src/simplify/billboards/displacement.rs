@@ -31,14 +31,8 @@ impl Displacement {
 
 /// The lowest and highest eye.
 pub(super) fn eyes(mesh: &Mesh, cell: &ViewCell, up: Up) -> [f64; 2] {
-    let heights = |points: &[DVec3]| {
-        points
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &p| {
-                [low.min(up.height(p)), high.max(up.height(p))]
-            })
-    };
-    heights(cell.corners().unwrap_or(mesh.positions()))
+    let points = cell.corners().unwrap_or(mesh.positions());
+    math::range(points.iter().map(|&p| up.height(p)))
 }
 
 /// Measures the displacement of the vertices of the triangles that a quad replaces.
@@ -55,18 +49,14 @@ pub(super) fn displacement(
             let s = quad.project(p);
             let (from, to) = (up.plan(p), up.plan(s));
             for side in &cell.sides {
-                let seen = if quad.horizontal {
-                    0.0
-                } else {
-                    segment_error(side, from, to).angle
-                };
-                worst.horizontal = worst.horizontal.max(seen);
+                if !quad.horizontal {
+                    let seen = segment_error(side, from, to).angle;
+                    worst.horizontal = worst.horizontal.max(seen);
+                }
                 let [first, last] = side.ends();
                 let foot = side.enter(from).x.clamp(first, last);
-                for x in [foot, first, last] {
-                    if !x.is_finite() {
-                        continue;
-                    }
+                let finite = [foot, first, last].into_iter().filter(|x| x.is_finite());
+                for x in finite {
                     let viewer = side.viewpoint(x);
                     for eye in eyes {
                         let turn = |plan: DVec2, height: f64| {

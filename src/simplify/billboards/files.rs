@@ -80,16 +80,15 @@ pub fn write(
         let texture = cloud.quads[i].texture(original);
         png::write_rgba(&folder.join(format!("{}.png", name(i))), &texture)
     })?;
-    let mut library = String::new();
-    for i in 0..cloud.quads.len() {
+    let material = |i| {
         let name = name(i);
-        library.push_str(&format!(
+        format!(
             "newmtl {name}\nKa 0 0 0\nKd 1 1 1\nillum 1\nmap_Kd {name}.png\nmap_d -imfchan m {name}.png\n\n"
-        ));
-    }
-    atomic::write(&folder.join(LIBRARY), |file| {
-        file.write_all(library.as_bytes())
-    })?;
+        )
+    };
+    let library: String = (0..cloud.quads.len()).map(material).collect();
+    let path = folder.join(LIBRARY);
+    atomic::write(&path, |file| file.write_all(library.as_bytes()))?;
     let path = folder.join("billboards.obj");
     io::write(&path, &mesh(cloud, original)?)?;
     Ok(path)

@@ -67,6 +67,16 @@ pub(super) struct PlanFace {
 }
 
 impl PlanFace {
+    /// A wall of one triangle, for tests.
+    #[cfg(test)]
+    pub(super) fn wall(triangle: u32, from: DVec2, along: DVec2) -> Self {
+        Self {
+            segments: vec![[from, from + along]],
+            triangles: vec![triangle],
+            area: along.perp(),
+        }
+    }
+
     /// True for a vertical wall.
     pub(super) fn is_wall(&self) -> bool {
         self.segments.len() == 1
@@ -155,19 +165,13 @@ impl Plan {
         keyed.sort_by_key(|&(key, t, _)| (key, t));
         let mut last = None;
         for (key, t, segments) in keyed {
-            let corners = mesh.corners(t as usize);
-            let normal = area_normal(corners) / 2.0;
-            let across = up.plan(normal);
+            let across = up.plan(area_normal(mesh.corners(t as usize)) / 2.0);
             if last == Some(key)
                 && let Some(face) = plan.faces.last_mut()
             {
                 face.triangles.push(t);
-                let turned = if face.area.dot(across) < 0.0 {
-                    -across
-                } else {
-                    across
-                };
-                face.area += turned;
+                let against = face.area.dot(across) < 0.0;
+                face.area += if against { -across } else { across };
             } else {
                 plan.faces.push(PlanFace {
                     segments,

@@ -71,17 +71,10 @@ impl Quad {
 
     fn picture(&self, mesh: &Mesh) -> raster::Picture<[u8; 3]> {
         let [right, up, back] = self.axes;
-        let corners: Vec<[DVec3; 3]> = self
-            .drawn
-            .iter()
-            .map(|&t| mesh.corners(t as usize))
-            .collect();
+        let corners = self.drawn.iter().flat_map(|&t| mesh.corners(t as usize));
+        let positions: Vec<DVec3> = corners.collect();
         let depth = |p: &DVec3| (p - self.corner).dot(back);
-        let depths = || corners.iter().flatten().map(depth);
-        let (low, high) = (
-            depths().fold(f64::INFINITY, f64::min),
-            depths().fold(f64::NEG_INFINITY, f64::max),
-        );
+        let [low, high] = math::range(positions.iter().map(depth));
         let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
         let span = (high - low) * 1.25 + self.size[0].max(self.size[1]) * 1e-6;
         let steep = self.along.dot(back);
@@ -116,7 +109,6 @@ impl Quad {
         };
         let count = self.drawn.len() as u32;
         let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let positions = corners.into_iter().flatten().collect();
         let scene = Scene::new(positions, triangles, self.drawn.clone());
         raster::rgb(&scene.with_colors(colors(mesh, &self.drawn)), &view, &set)
     }
@@ -154,11 +146,8 @@ fn colors(mesh: &Mesh, triangles: &[u32]) -> Vec<[[f64; 3]; 3]> {
     };
     let color = |wedge: u32| {
         let v = attributes.value(channel, wedge);
-        if v[0].is_nan() {
-            [1.0; 3]
-        } else {
-            [v[0], v[1], v[2]]
-        }
+        let none = v[0].is_nan();
+        if none { [1.0; 3] } else { [v[0], v[1], v[2]] }
     };
     let of = |&t: &u32| attributes.corners()[t as usize].each(color);
     triangles.iter().map(of).collect()

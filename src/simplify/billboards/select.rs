@@ -76,11 +76,8 @@ pub(super) fn select(
     let mut alone = Vec::new();
     let mut left = faces.len();
     loop {
-        progress.step(
-            "choose planes",
-            (faces.len() - left) as u64,
-            faces.len() as u64,
-        )?;
+        let done = (faces.len() - left) as u64;
+        progress.step("choose planes", done, faces.len() as u64)?;
         let Some(k) = selection.most(&mut stabs, &mut sweeps, &bearings) else {
             break;
         };
@@ -126,9 +123,8 @@ fn shares(sweeps: &[Sweep], faces: usize) -> Vec<u64> {
             *a = b.max(*a);
         }
     }
-    most.into_iter()
-        .map(|most| WHOLE / u64::from(most))
-        .collect()
+    let share = |most| WHOLE / u64::from(most);
+    most.into_iter().map(share).collect()
 }
 
 impl Selection<'_> {
@@ -150,12 +146,8 @@ impl Selection<'_> {
     ) -> Option<usize> {
         let mut fresh = vec![false; stabs.len()];
         loop {
-            let mut k = 0;
-            for i in 1..stabs.len() {
-                if stabs[i].gain > stabs[k].gain {
-                    k = i;
-                }
-            }
+            // The first of the best.
+            let k = (0..stabs.len()).rev().max_by_key(|&i| stabs[i].gain)?;
             if stabs[k].gain == 0 {
                 return None;
             }
@@ -184,11 +176,8 @@ impl Selection<'_> {
             let [a, b] = self.faces[face as usize].segments[0];
             (a + b) / 2.0
         };
-        let sum: DVec2 = taken
-            .iter()
-            .map(|&face| middle(face))
-            .fold(DVec2::ZERO, |a, b| a + b);
-        let centre = sum / (taken.len().max(1) as f64);
+        let middles = taken.iter().map(|&face| middle(face));
+        let centre = middles.fold(DVec2::ZERO, |a, b| a + b) / (taken.len().max(1) as f64);
         let mut step = half_steps(self.options);
         // Whatever a turn about the centre can reach.
         let reach = 3.0 * step.whole + SLANT_REACH * step.slant;
@@ -321,29 +310,17 @@ mod tests {
         };
         let cell = ViewCell::segment([DVec3::ZERO, DVec3::X]).expect("two points");
         let cell = PlanCell::new(&cell, options.up).expect("room");
-        let faces: Vec<PlanFace> = (0..200)
-            .map(|t| {
-                let (a, b) = (at(9.0) + DVec2::Y * 11.0, at(0.3));
-                PlanFace {
-                    segments: vec![[a, a + b]],
-                    triangles: vec![t],
-                    area: b.perp(),
-                }
-            })
-            .collect();
-        let bearings = grid(&faces, &options);
-        let limits = bearings
-            .iter()
-            .map(|&bearing| cell.limits(bearing, options.limit));
-        let limits: Vec<Limits> = limits.collect();
+        let faces = (0..200).map(|t| PlanFace::wall(t, at(9.0) + DVec2::Y * 11.0, at(0.3)));
+        let faces: Vec<PlanFace> = faces.collect();
+        let limits = |bearing| cell.limits(bearing, options.limit);
+        let limits: Vec<Limits> = grid(&faces, &options).into_iter().map(limits).collect();
         let sweep = |limits| Sweep::new(&faces, 0..200, limits);
         let mut sweeps: Vec<Sweep> = limits.iter().map(sweep).collect();
         let values = shares(&sweeps, faces.len());
-        let gains: Vec<u64> = sweeps
-            .iter_mut()
-            .zip(&limits)
-            .map(|(sweep, limits)| sweep.best(&faces, limits, |f| values[f as usize]).gain)
-            .collect();
+        let value = |face: u32| values[face as usize];
+        let best = sweeps.iter_mut().zip(&limits);
+        let gains = best.map(|(sweep, limits)| sweep.best(&faces, limits, value).gain);
+        let gains: Vec<u64> = gains.collect();
         // And the fullest ones are worth as much.
         assert!(gains.iter().all(|&gain| gain <= WHOLE));
         assert!(gains.iter().any(|&gain| gain > WHOLE - 200));
@@ -357,15 +334,8 @@ mod tests {
             rho: 0.0,
             faces: faces.to_vec(),
         };
-        let homes = [
-            vec![0, 2],
-            vec![0, 1, 2],
-            vec![1],
-            vec![1],
-            vec![2],
-            vec![1, 2],
-            vec![],
-        ];
+        let homes: [&[u32]; 7] = [&[0, 2], &[0, 1, 2], &[1], &[1], &[2], &[1, 2], &[]];
+        let homes = homes.map(<[u32]>::to_vec);
         let mut slabs = vec![slab(&[0, 1]), slab(&[2, 3]), slab(&[4])];
         let left = place(&mut slabs, &homes, vec![5, 6]);
         assert_eq!(left, [6]);

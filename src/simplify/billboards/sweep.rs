@@ -102,11 +102,8 @@ impl Sweep {
 fn order(at: f64, ends: bool, face: u32) -> u128 {
     let bits = at.to_bits();
     // As `total_cmp`.
-    let rising = if at.is_sign_negative() {
-        !bits
-    } else {
-        bits | 1 << 63
-    };
+    let negative = at.is_sign_negative();
+    let rising = if negative { !bits } else { bits | 1 << 63 };
     u128::from(rising) << 64 | u128::from(ends) << 32 | u128::from(face)
 }
 
@@ -140,16 +137,8 @@ mod tests {
             let count = 1 + case % 40;
             // Coarse, so that ends meet.
             let mut at = |size: u32| f64::from(random.bits() % size);
-            let faces: Vec<PlanFace> = (0..count)
-                .map(|t| {
-                    let (x, along) = (at(30), DVec2::X * (0.5 * at(5)));
-                    PlanFace {
-                        segments: vec![[DVec2::X * x, DVec2::X * x + along]],
-                        triangles: vec![t],
-                        area: DVec2::Y,
-                    }
-                })
-                .collect();
+            let mut wall = |t| PlanFace::wall(t, DVec2::X * at(30), DVec2::X * (0.5 * at(5)));
+            let faces: Vec<PlanFace> = (0..count).map(&mut wall).collect();
             let limits = Limits::Distance(DVec2::X, 1.0 + at(3));
             let values: Vec<u64> = (0..count).map(|_| at(4) as u64).collect();
             let sum_at = |rho: f64, value: &dyn Fn(usize) -> u64| {

@@ -150,16 +150,8 @@ mod tests {
         let (mut all, mut kept) = (0, 0);
         for case in 0..120 {
             let mut at = |size: f64| DVec2::new(between(-size, size), between(-size, size));
-            let faces: Vec<PlanFace> = (0..400)
-                .map(|t| {
-                    let (a, b) = (at(9.0), at(2.0));
-                    PlanFace {
-                        segments: vec![[a, a + b]],
-                        triangles: vec![t],
-                        area: b.perp(),
-                    }
-                })
-                .collect();
+            let faces = (0..400).map(|t| PlanFace::wall(t, at(9.0), at(2.0)));
+            let faces: Vec<PlanFace> = faces.collect();
             let (from, to, centre) = (at(4.0), at(4.0), at(9.0));
             let cells = [
                 ViewerSegment::between(from, to),

@@ -9,6 +9,7 @@ use crate::{
         planar::{Projection, ViewerSegment},
         view_cell::{Shape, ViewCell},
     },
+    num::math::range,
 };
 
 /// Viewers seen from above.
@@ -119,12 +120,8 @@ impl PlanCell {
     pub(super) fn somewhere(&self) -> DVec2 {
         let side = &self.sides[0];
         let [first, last] = side.ends();
-        let x = if first.is_finite() {
-            (first + last) / 2.0
-        } else {
-            0.0
-        };
-        side.viewpoint(x)
+        let ends = first.is_finite();
+        side.viewpoint(if ends { (first + last) / 2.0 } else { 0.0 })
     }
 
     /// The limits of projections on planes of `bearing`; a distance is measured along their normal.
@@ -171,18 +168,12 @@ fn stands_in(side: &ViewerSegment, corners: [DVec2; 3]) -> bool {
     let meetings = [(a, b), (b, c), (c, a)].into_iter().filter_map(|(p, q)| {
         let apart = (p.y > 0.0 && q.y > 0.0) || (p.y < 0.0 && q.y < 0.0);
         let along = p.y / (p.y - q.y);
-        (!apart).then(|| {
-            if along.is_finite() {
-                [p.x + (q.x - p.x) * along; 2]
-            } else {
-                [p.x.min(q.x), p.x.max(q.x)]
-            }
+        (!apart).then(|| match along.is_finite() {
+            true => [p.x + (q.x - p.x) * along; 2],
+            false => [p.x, q.x],
         })
     });
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let [low, high] = meetings.fold(none, |[low, high], [from, to]| {
-        [low.min(from), high.max(to)]
-    });
+    let [low, high] = range(meetings.flatten());
     let [first, last] = side.ends();
     low <= last && first <= high
 }
@@ -202,12 +193,8 @@ fn segment_distance(side: &ViewerSegment, a: DVec2, b: DVec2) -> f64 {
     let to_face = |x: f64| {
         let (p, along) = (DVec2::new(x, 0.0), b - a);
         let t = (p - a).dot(along) / along.length_squared();
-        let t = if t.is_finite() {
-            t.clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        p.distance(a + along * t)
+        let share = if t.is_finite() { t } else { 0.0 };
+        p.distance(a + along * share.clamp(0.0, 1.0))
     };
     let ends = [first, last].into_iter().filter(|x| x.is_finite());
     ends.map(to_face).fold(to_side(a).min(to_side(b)), f64::min)

@@ -4,7 +4,7 @@
 
 mod judged;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lodmark::{
     bound::{
         correspondence::{Collapse, Correspondence, Face, Layout, PieceScratch},
@@ -35,95 +35,90 @@ fn ring(class: Class, random: &mut Random) -> (Vec<Face>, Vec<Face>, DVec3) {
     let (u, w) = (height(-0.5, 0.0), height(0.5, 0.0));
     let mut points = vec![u, w];
     // The link, counter-clockwise from below u (inside), or an arc above the edge.
-    let count = if class == Class::Inside {
-        2 * half
-    } else {
-        half + 1
-    };
-    let whole = if class == Class::Inside {
-        count
-    } else {
-        count - 1
+    let (count, whole, turns, start) = match class {
+        Class::Inside => (2 * half, 2 * half, 2.0, -0.5),
+        _ => (half + 1, half, 1.0, 0.0),
     };
     for i in 0..count {
-        let turn = i as f64 / whole as f64 * if class == Class::Inside { 2.0 } else { 1.0 };
-        let a = turn * std::f64::consts::PI
-            + if class == Class::Inside {
-                -0.5 * std::f64::consts::PI
-            } else {
-                0.0
-            };
+        let a = (i as f64 / whole as f64 * turns + start) * std::f64::consts::PI;
         points.push(height(1.6 * libm::cos(a), 1.3 * libm::sin(a)));
     }
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
     let link = |i: usize| 2 + (i % count) as u32;
-    match class {
+    let side = |end: u32, i: usize| [end, link(i), link(i + 1)];
+    let around = |end: u32, range: std::ops::Range<usize>| range.map(move |i| side(end, i));
+    let mut triangles: Vec<[u32; 3]> = match class {
         // Right half around w, then left half around u; the two faces beside the edge in between.
         Class::Inside => {
-            for i in 0..half {
-                triangles.push([1, link(i), link(i + 1)]);
-            }
-            for i in half..count {
-                triangles.push([0, link(i), link(i + 1)]);
-            }
-            triangles.push([0, 1, link(half)]);
-            triangles.push([1, 0, link(0)]);
+            let beside = [[0, 1, link(half)], [1, 0, link(0)]];
+            around(1, 0..half)
+                .chain(around(0, half..count))
+                .chain(beside)
+                .collect()
         }
         Class::Border => {
             let top = 1 + random_index(&points) % (count - 2);
-            for i in 0..top {
-                triangles.push([1, link(i), link(i + 1)]);
-            }
-            for i in top..count - 1 {
-                triangles.push([0, link(i), link(i + 1)]);
-            }
-            triangles.push([0, 1, link(top)]);
+            let beside = [[0, 1, link(top)]];
+            around(1, 0..top)
+                .chain(around(0, top..count - 1))
+                .chain(beside)
+                .collect()
         }
         // w is inside, u in the middle of the boundary below it.
         Class::Touching => {
             points[0] = DVec3::new(0.0, 0.0, u.z);
             points[1] = DVec3::new(0.0, 0.6, w.z);
-            let (first, last) = (1, count - 2);
-            triangles.push([0, link(0), link(first)]);
-            for i in first..last {
-                triangles.push([1, link(i), link(i + 1)]);
-            }
-            triangles.push([0, link(last), link(count - 1)]);
-            triangles.push([0, link(first), 1]);
-            triangles.push([0, 1, link(last)]);
+            let last = count - 2;
+            let beside = [side(0, last), [0, link(1), 1], [0, 1, link(last)]];
+            around(0, 0..1)
+                .chain(around(1, 1..last))
+                .chain(beside)
+                .collect()
         }
-    }
-    let mut at = |low: f64, high: f64| low + (high - low) * random.unit();
-    let to = match class {
-        Class::Inside => DVec3::new(at(-0.5, 0.5), at(-0.2, 0.2), at(-0.2, 0.2)),
-        Class::Border => DVec3::new(at(-0.7, 0.7), at(-0.1, 0.1), at(-0.2, 0.2)),
-        Class::Touching => DVec3::new(at(-0.1, 0.1), at(-0.1, 0.1), at(-0.2, 0.2)),
     };
-    let mut removed = Vec::new();
-    let mut added = Vec::new();
-    for (id, corners) in triangles.into_iter().enumerate() {
-        // Any corner may be the first.
-        let turn = id % 3;
-        let corners = [
-            corners[turn],
-            corners[(turn + 1) % 3],
-            corners[(turn + 2) % 3],
-        ];
-        let points = corners.map(|v| points[v as usize]);
+    let mut at = |size: f64| size * (2.0 * random.unit() - 1.0);
+    let [x, y, z] = match class {
+        Class::Inside => [0.5, 0.2, 0.2],
+        Class::Border => [0.7, 0.1, 0.2],
+        Class::Touching => [0.1, 0.1, 0.2],
+    };
+    let to = DVec3::new(at(x), at(y), at(z));
+    // Any corner may be the first.
+    for (id, corners) in triangles.iter_mut().enumerate() {
+        corners.rotate_left(id % 3);
+    }
+    let (removed, added) = collapsed(&triangles, &points, to);
+    (removed, added, to)
+}
+
+/// The faces of a fan before and after the edge from vertex 0 to vertex 1 collapses into vertex 0 at `to`.
+fn collapsed(triangles: &[[u32; 3]], points: &[DVec3], to: DVec3) -> (Vec<Face>, Vec<Face>) {
+    let (mut removed, mut added) = (Vec::new(), Vec::new());
+    for (id, &corners) in (0_u32..).zip(triangles) {
+        let before = corners.map(|v| points[v as usize]);
         removed.push(Face {
-            id: id as u32,
+            id,
             corners,
-            points,
+            points: before,
         });
         if !(corners.contains(&0) && corners.contains(&1)) {
             added.push(Face {
-                id: id as u32,
-                corners: corners.map(|v| v.saturating_sub(u32::from(v == 1))),
-                points: std::array::from_fn(|k| if corners[k] < 2 { to } else { points[k] }),
+                id,
+                corners: corners.map(|v| if v == 1 { 0 } else { v }),
+                points: corners.map(|v| if v < 2 { to } else { points[v as usize] }),
             });
         }
     }
-    (removed, added, to)
+    (removed, added)
+}
+
+fn layout(removed: &[Face], added: &[Face], to: DVec3) -> Option<Layout> {
+    Layout::new(&Collapse {
+        removed,
+        added,
+        keep: 0,
+        gone: 1,
+        to,
+    })
 }
 
 fn random_index(points: &[DVec3]) -> usize {
@@ -146,17 +141,15 @@ fn images(
         for piece in map.pieces(face).filter(|p| p.triangle == triangle) {
             let c = piece.corners;
             for i in 2..c.len() {
-                let [a, b, d] = [c[0], c[i - 1], c[i]].map(|c| c.source.get());
-                let area = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-                    (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-                };
-                let whole = area(a, b, d);
-                let w =
-                    [area([u, v], b, d), area(a, [u, v], d), area(a, b, [u, v])].map(|x| x / whole);
+                let three = [c[0], c[i - 1], c[i]];
+                let [a, b, d] = three.map(|c| DVec2::from_array(c.source.get()));
+                let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+                let (place, whole) = (DVec2::new(u, v), area(a, b, d));
+                let w = [area(place, b, d), area(a, place, d), area(a, b, place)];
+                let w = w.map(|x| x / whole);
                 if whole > 1e-12 && w.iter().all(|&x| x >= -1e-7) {
-                    let image =
-                        |k: usize| at(face_points(face), [c[0], c[i - 1], c[i]][k].target.get());
-                    found.push(image(0) * w[0] + image(1) * w[1] + image(2) * w[2]);
+                    let image = three.map(|c| at(face_points(face), c.target.get()));
+                    found.push(image[0] * w[0] + image[1] * w[1] + image[2] * w[2]);
                 }
             }
         }
@@ -169,9 +162,9 @@ fn covered(map: &Correspondence, triangle: u32) -> f64 {
     let mut sum = 0.0;
     for face in 0..map.face_count() as u32 {
         for piece in map.pieces(face).filter(|p| p.triangle == triangle) {
-            for i in 0..piece.corners.len() {
-                let [p, q] =
-                    [i, (i + 1) % piece.corners.len()].map(|i| piece.corners[i].source.get());
+            for (i, corner) in piece.corners.iter().enumerate() {
+                let next = &piece.corners[(i + 1) % piece.corners.len()];
+                let (p, q) = (corner.source.get(), next.source.get());
                 sum += p[0] * q[1] - p[1] * q[0];
             }
         }
@@ -187,8 +180,7 @@ proptest! {
         let class = [Class::Inside, Class::Touching, Class::Border][usize::from(kind)];
         let mut random = Random(seed);
         let (removed, added, to) = ring(class, &mut random);
-        let collapse = Collapse { removed: &removed, added: &added, keep: 0, gone: 1, to };
-        let Some(fan) = Layout::new(&collapse) else {
+        let Some(fan) = layout(&removed, &added, to) else {
             // A new vertex outside of what its link sees has no map; rare for these fans.
             return Ok(());
         };
@@ -235,18 +227,11 @@ proptest! {
 #[test]
 fn most_fans_of_every_class_have_a_map() {
     for class in [Class::Inside, Class::Touching, Class::Border] {
-        let mapped = (0..200).filter(|&seed| {
+        let is_mapped = |&seed: &u64| {
             let (removed, added, to) = ring(class, &mut Random(seed));
-            Layout::new(&Collapse {
-                removed: &removed,
-                added: &added,
-                keep: 0,
-                gone: 1,
-                to,
-            })
-            .is_some()
-        });
-        let count = mapped.count();
+            layout(&removed, &added, to).is_some()
+        };
+        let count = (0..200).filter(is_mapped).count();
         assert!(count >= 150, "{class:?}: only {count} of 200");
     }
 }
@@ -261,23 +246,13 @@ fn a_flat_fan_moves_no_point() {
                 p.z = 0.0;
             }
         }
-        let collapse = Collapse {
-            removed: &removed,
-            added: &added,
-            keep: 0,
-            gone: 1,
-            to,
-        };
-        let fan = Layout::new(&collapse).expect("flat and convex");
+        let fan = layout(&removed, &added, to).expect("flat and convex");
         let originals = removed.iter().map(|f| f.points).collect();
         let mut map = Correspondence::new(originals, |_| true);
         assert!(map.apply(&fan, &mut PieceScratch::default()));
         for face in &added {
-            assert!(
-                map.displacement(face.id) < 1e-8,
-                "{}",
-                map.displacement(face.id)
-            );
+            let moved = map.displacement(face.id);
+            assert!(moved < 1e-8, "{moved}");
         }
     }
 }
@@ -285,27 +260,10 @@ fn a_flat_fan_moves_no_point() {
 #[test]
 fn folded_torn_and_turned_fans_have_no_map() {
     let (removed, added, to) = ring(Class::Inside, &mut Random(3));
-    let lay_out = |removed: &[Face], added: &[Face], to| {
-        Layout::new(&Collapse {
-            removed,
-            added,
-            keep: 0,
-            gone: 1,
-            to,
-        })
-        .is_some()
-    };
-    assert!(lay_out(&removed, &added, to));
-    assert!(!lay_out(&[], &[], to), "nothing");
-    assert!(
-        !lay_out(&removed[1..], &added[1..], to),
-        "a face is missing"
-    );
-    assert!(!lay_out(&removed, &added[1..], to), "a face vanishes");
+    assert!(layout(&removed, &added, to).is_some());
     let mut turned = removed.clone();
     turned[0].corners.swap(0, 1);
     turned[0].points.swap(0, 1);
-    assert!(!lay_out(&turned, &added, to), "a face is turned over");
     let far = DVec3::new(9.0, 0.0, 0.0);
     let mut outside = added.clone();
     for face in &mut outside {
@@ -315,22 +273,24 @@ fn folded_torn_and_turned_fans_have_no_map() {
             }
         }
     }
-    assert!(
-        !lay_out(&removed, &outside, far),
-        "the new vertex lies outside"
-    );
-    let mut twice = removed.clone();
-    twice.extend_from_slice(&removed);
-    assert!(!lay_out(&twice, &added, to), "every face is there twice");
+    let twice = [&removed[..], &removed].concat();
+    for (removed, added, to, told) in [
+        (&[][..], &[][..], to, "nothing"),
+        (&removed[1..], &added[1..], to, "a face is missing"),
+        (&removed, &added[1..], to, "a face vanishes"),
+        (&turned, &added, to, "a face is turned over"),
+        (&removed, &outside, far, "the new vertex lies outside"),
+        (&twice, &added, to, "every face is there twice"),
+    ] {
+        assert!(layout(removed, added, to).is_none(), "{told}");
+    }
 }
 
 /// A map through as many collapses as move no point farther than `most`, and the mesh it leads to.
 fn run(mesh: &Mesh, triangles: u64, most: f64) -> (Correspondence, Mesh) {
     let cell = ViewCell::half_space(DVec3::new(0.0, 0.0, 1e4), DVec3::NEG_Z).expect("a half-space");
-    let options = Options::view_bounded(
-        ViewBoundedOptions::new(cell, (most / 1e4).to_degrees()),
-        Target::Triangles(triangles),
-    );
+    let own = ViewBoundedOptions::new(cell, (most / 1e4).to_degrees());
+    let options = Options::view_bounded(own, Target::Triangles(triangles));
     let outcome = simplify(mesh, &options).expect("valid");
     let map = outcome.correspondence().expect("this method keeps account");
     (map.clone(), outcome.mesh)

@@ -118,11 +118,9 @@ fn embree_hits_what_the_rasterizer_shows() {
         return;
     };
     let (count, size) = if full() { (20, 480) } else { (2, 160) };
-    let mut scenes: Vec<(&str, Mesh)> = generate::NAMES
-        .iter()
-        .filter(|name| full() || ["engine", "tori", "probe"].contains(name))
-        .map(|&name| (name, generate::by_name(name).expect("a name of the list")))
-        .collect();
+    let wanted = |name| full() || ["engine", "tori", "probe"].contains(name);
+    let scenes = generate::NAMED.iter().filter(|(name, _)| wanted(name));
+    let mut scenes: Vec<(&str, Mesh)> = scenes.map(|(name, make)| (*name, make())).collect();
     for name in ["bunny.ply", "dragon.ply"] {
         if (full() || name == "bunny.ply")
             && let Some(mesh) = model(name)

@@ -4,15 +4,13 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use lodmark::bound::{
-    correspondence::{
-        Allowance, AngleLimit, Answer, Collapse, Correspondence, Face, Layout, PieceScratch,
-    },
+    correspondence::{Allowance, AngleLimit, Answer, Correspondence, Layout, PieceScratch},
     view_cell::ViewCell,
 };
 use proptest::prelude::*;
 
-use super::{Class, at, ring};
-use crate::support::{Random, bounded};
+use super::{Class, at, collapsed, layout, ring};
+use crate::support::{Random, angle_between, bounded, lattice, mixture};
 
 /// What was asked about: triangle, corners, and what stands for these.
 type Heard = Vec<(u32, Vec<DVec3>, Vec<DVec3>)>;
@@ -44,6 +42,16 @@ fn judge(map: &Correspondence, fan: &Layout, wrong: usize) -> (Answer, Heard) {
     (answer, judge.heard.into_inner())
 }
 
+/// The largest factor up to `most` that is allowed.
+fn farthest(most: f64, allows: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..50 {
+        let k = 0.5 * (low + high);
+        *(if allows(k) { &mut low } else { &mut high }) = k;
+    }
+    low
+}
+
 proptest! {
     #![proptest_config(bounded(600))]
 
@@ -52,8 +60,7 @@ proptest! {
         let class = [Class::Inside, Class::Touching, Class::Border][usize::from(kind)];
         let mut random = Random(seed);
         let (removed, added, to) = ring(class, &mut random);
-        let collapse = Collapse { removed: &removed, added: &added, keep: 0, gone: 1, to };
-        let Some(fan) = Layout::new(&collapse) else { return Ok(()) };
+        let Some(fan) = layout(&removed, &added, to) else { return Ok(()) };
         let originals: Vec<[DVec3; 3]> = removed.iter().map(|f| f.points).collect();
         let mut map = Correspondence::new(originals.clone(), |_| true);
         let (answer, all) = judge(&map, &fan, usize::MAX);
@@ -89,10 +96,7 @@ proptest! {
         degrees in prop::sample::select(vec![0.05, 1.0, 20.0]),
     ) {
         let mut random = Random(seed);
-        let mut vector = |size: f64| {
-            let mut axis = || (random.unit() * 2.0 - 1.0) * size;
-            DVec3::new(axis(), axis(), axis())
-        };
+        let mut vector = |size: f64| random.vector(size);
         // A cell somewhere around the triangle, with a way out to it.
         let out = vector(1.0).normalize_or(DVec3::X);
         let [across, other] = [out.any_orthonormal_vector(), out.cross(out.any_orthonormal_vector())];
@@ -114,21 +118,15 @@ proptest! {
         let own = [0, 1, 2].map(|_| vector(if seed % 3 == 0 { 1.0 } else { 0.05 }));
         let moved = |k: f64| [0, 1, 2].map(|i| triangle[i] + (common + own[i]) * k);
         let limit = AngleLimit::new(&[triangle], &cell, f64::to_radians(degrees));
-        // As far as it is allowed.
-        let (mut low, mut high) = (0.0, 8.0);
-        for _ in 0..50 {
-            let k = 0.5 * (low + high);
-            if limit.allows(0, &triangle, &moved(k)) { low = k } else { high = k }
-        }
-        let low_corners = moved(low);
-        prop_assert!(low > 0.0);
+        let farthest = farthest(8.0, |k| limit.allows(0, &triangle, &moved(k)));
+        let low_corners = moved(farthest);
+        prop_assert!(farthest > 0.0);
         let mut eyes: Vec<DVec3> = cell.corners().unwrap_or_default().to_vec();
         let corners = eyes.clone();
         for _ in 0..60 {
             let weights: Vec<f64> = corners.iter().map(|_| -libm::log(random.unit().max(1e-9))).collect();
-            let sum: f64 = weights.iter().sum();
             if !corners.is_empty() {
-                eyes.push(corners.iter().zip(&weights).fold(DVec3::ZERO, |all, (&c, &w)| all + c * (w / sum)));
+                eyes.push(mixture(&corners, &weights));
             }
         }
         for i in 0..60 {
@@ -148,8 +146,7 @@ proptest! {
             for place in [place, [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0 / 3.0, 1.0 / 3.0]] {
                 let (p, s) = (at(triangle, place), at(low_corners, place));
                 for &eye in &eyes {
-                    let (p, s) = (p - eye, s - eye);
-                    let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
+                    let seen = angle_between(eye, p, s).to_degrees();
                     prop_assert!(seen <= degrees * (1.0 + 1e-9), "{seen} from {eye}");
                 }
             }
@@ -162,10 +159,7 @@ proptest! {
         kind in 0_u8..3, seed: u64, near in 0.1..1.5_f64, degrees in prop::sample::select(vec![0.5, 5.0, 30.0]),
     ) {
         let mut random = Random(seed);
-        let mut vector = |size: f64| {
-            let mut axis = || (random.unit() * 2.0 - 1.0) * size;
-            DVec3::new(axis(), axis(), axis())
-        };
+        let mut vector = |size: f64| random.vector(size);
         // Viewers above the middle of a triangle, which moves towards them or away, and a little to the side.
         let triangle = [(1.8, 0.0), (-0.9, 1.6), (-0.9, -1.6)].map(|(x, y)| DVec3::new(x, y, 0.0) + vector(0.2));
         let eye = DVec3::Z * near + vector(0.2 * near);
@@ -179,23 +173,13 @@ proptest! {
         let own = [0, 1, 2].map(|_| vector(0.02));
         let moved = |k: f64| [0, 1, 2].map(|i| triangle[i] + (way + own[i]) * k);
         let limit = AngleLimit::new(&[triangle], &cell, f64::to_radians(degrees));
-        let (mut low, mut high) = (0.0, 2.0 * near);
-        for _ in 0..40 {
-            let k = 0.5 * (low + high);
-            if limit.allows(0, &triangle, &moved(k)) { low = k } else { high = k }
-        }
-        let allowed = moved(low);
+        let allowed = moved(farthest(2.0 * near, |k| limit.allows(0, &triangle, &moved(k))));
         for _ in 0..10 {
             let weights: Vec<f64> = corners.iter().map(|_| random.unit() + 1e-9).collect();
-            let sum: f64 = weights.iter().sum();
-            let eye = corners.iter().zip(&weights).fold(DVec3::ZERO, |all, (&c, &w)| all + c * (w / sum));
-            for i in 0..=20 {
-                for j in 0..=20 - i {
-                    let place = [f64::from(i) / 20.0, f64::from(j) / 20.0];
-                    let (p, s) = (at(triangle, place) - eye, at(allowed, place) - eye);
-                    let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
-                    prop_assert!(seen <= degrees * (1.0 + 1e-9), "{seen} of {degrees} from {eye} at {place:?}");
-                }
+            let eye = mixture(&corners, &weights);
+            for (p, s) in lattice(triangle, 20).zip(lattice(allowed, 20)) {
+                let seen = angle_between(eye, p, s).to_degrees();
+                prop_assert!(seen <= degrees * (1.0 + 1e-9), "{seen} of {degrees} from {eye} at {p}");
             }
         }
     }
@@ -209,49 +193,22 @@ fn a_fan_that_goes_around_twice_has_no_map() {
         let mut points = vec![u, w];
         // Around w from below it, then around u from above it.
         let (first, second) = (8 * turns as usize, 4);
-        let step = |k: usize| {
-            if k <= first {
-                -0.25 + (k as f64 / first as f64) * (turns - 0.5)
-            } else {
-                0.25 + (k - first) as f64 / second as f64 * 0.5
-            }
-        };
         let count = first + second;
         for k in 0..count {
-            let angle = step(k) * std::f64::consts::TAU;
-            let height = 0.02 * k as f64;
+            let turn = match k.checked_sub(first + 1) {
+                None => -0.25 + (k as f64 / first as f64) * (turns - 0.5),
+                Some(more) => 0.25 + (more + 1) as f64 / second as f64 * 0.5,
+            };
+            let (angle, height) = (turn * std::f64::consts::TAU, 0.02 * k as f64);
             points.push(DVec3::new(libm::cos(angle), libm::sin(angle), height));
         }
         let link = |k: usize| 2 + (k % count) as u32;
-        let mut triangles: Vec<[u32; 3]> = (0..count)
-            .map(|k| [u32::from(k < first), link(k), link(k + 1)])
-            .collect();
-        triangles.push([0, 1, link(first)]);
-        triangles.push([1, 0, link(0)]);
-        let to = DVec3::new(0.0, 0.0, 0.1);
-        let (mut removed, mut added) = (Vec::new(), Vec::new());
-        for (id, corners) in (0_u32..).zip(triangles) {
-            removed.push(Face {
-                id,
-                corners,
-                points: corners.map(|v| points[v as usize]),
-            });
-            if !(corners.contains(&0) && corners.contains(&1)) {
-                added.push(Face {
-                    id,
-                    corners: corners.map(|v| if v == 1 { 0 } else { v }),
-                    points: corners.map(|v| if v < 2 { to } else { points[v as usize] }),
-                });
-            }
-        }
-        Layout::new(&Collapse {
-            removed: &removed,
-            added: &added,
-            keep: 0,
-            gone: 1,
-            to,
-        })
-        .is_some()
+        let side = |k| [u32::from(k < first), link(k), link(k + 1)];
+        let mut triangles: Vec<[u32; 3]> = (0..count).map(side).collect();
+        triangles.extend([[0, 1, link(first)], [1, 0, link(0)]]);
+        let to = DVec3::Z * 0.1;
+        let (removed, added) = collapsed(&triangles, &points, to);
+        layout(&removed, &added, to).is_some()
     };
     assert!(lay_out(1.0));
     assert!(!lay_out(2.0));
