@@ -1,7 +1,7 @@
 //! The displacement of points that viewers see: across the horizon, exactly at every vertex, and up or down, from sampled
 //! viewpoints.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::{Quad, plan::Up, viewers_in_plan::PlanCell};
 use crate::{

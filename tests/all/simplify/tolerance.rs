@@ -17,7 +17,9 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{Impatient, distance, faces, lattice, meshes, same_on_all_threads};
+use crate::support::{
+    Impatient, distance_to_all, faces, lattice, mesh_of, meshes, same_on_all_threads,
+};
 
 fn within(mesh: &Mesh, own: ToleranceOptions) -> Outcome {
     let options = Options::tolerance(own, Target::ErrorOnly);
@@ -38,14 +40,9 @@ fn diagonal(mesh: &Mesh) -> f64 {
 /// The largest sampled distance from the points of a surface to another one.
 fn farthest(from: &Mesh, to: &Mesh, steps: u32) -> f64 {
     let all = faces(to);
-    let mut most: f64 = 0.0;
-    for triangle in faces(from) {
-        for p in lattice(triangle, steps) {
-            let distances = all.iter().map(|&t| distance(p, t));
-            most = most.max(distances.fold(f64::INFINITY, f64::min));
-        }
-    }
-    most
+    let points = faces(from).into_iter().flat_map(|t| lattice(t, steps));
+    let distances = points.map(|p| distance_to_all(p, &all));
+    distances.fold(0.0, f64::max)
 }
 
 proptest! {
@@ -104,12 +101,8 @@ proptest! {
             let stays = all.filter(|t| patch.removed.iter().all(|f| f.id != *t));
             let mut after: Vec<[DVec3; 3]> = stays.filter_map(|t| live.points(t)).collect();
             after.extend(patch.added.iter().map(|f| patch.after(&live, f)));
-            let mut most = 0.0_f64;
-            for &triangle in &original {
-                for p in lattice(triangle, 4) {
-                    most = most.max(after.iter().map(|&t| distance(p, t)).fold(f64::INFINITY, f64::min));
-                }
-            }
+            let points = original.iter().flat_map(|&triangle| lattice(triangle, 4));
+            let most = points.map(|p| distance_to_all(p, &after)).fold(0.0, f64::max);
             let confirmed = method.review(&live, &patch) == Review::Commit;
             prop_assert!(!confirmed || most <= bound, "{most} of {bound}");
             if confirmed {
@@ -142,13 +135,9 @@ proptest! {
 #[test]
 fn no_number_of_threads_changes_a_bounded_result() {
     let mesh = canonical(&meshes::torus(40, 30, 3)).mesh;
-    for own in [
-        share(0.02),
-        ToleranceOptions {
-            volume: Some(Source::Edges),
-            ..share(0.03)
-        },
-    ] {
+    let mut with_volume = share(0.03);
+    with_volume.volume = Some(Source::Edges);
+    for own in [share(0.02), with_volume] {
         same_on_all_threads(|| {
             let outcome = within(&mesh, own);
             (content_sha256(&outcome.mesh), outcome.phases)
@@ -221,25 +210,19 @@ fn a_number_of_triangles_stops_before_the_bound_does() {
     let mesh = canonical(&meshes::torus(20, 15, 4)).mesh;
     let options = Options::tolerance(share(0.2), Target::Triangles(300));
     let outcome = simplify(&mesh, &options).expect("valid");
-    assert_eq!(
-        (outcome.mesh.triangles().len(), outcome.stop),
-        (300, Stop::TargetReached)
-    );
+    assert_eq!(outcome.mesh.triangles().len(), 300);
+    assert_eq!(outcome.stop, Stop::TargetReached);
     let strict = Options::tolerance(share(1e-4), Target::Triangles(300));
     let outcome = simplify(&mesh, &strict).expect("valid");
     let Stop::NoLegalCollapse { refusals } = outcome.stop else {
         panic!("300 triangles within a hundredth of a percent");
     };
-    let names: Vec<_> = refusals.iter().map(|(r, _)| r.name()).collect();
-    assert!(
-        names.contains(&"strays") || names.contains(&"uncovers"),
-        "{names:?}"
-    );
+    let own = |name: &str| ["strays", "uncovers"].contains(&name);
+    let refused = refusals.iter().any(|(r, _)| own(r.name()));
+    assert!(refused, "{refusals:?}");
     let copy = Options::tolerance(share(0.2), Target::Triangles(9999));
-    assert_eq!(
-        simplify(&mesh, &copy).expect("valid").stop,
-        Stop::TargetAboveInput
-    );
+    let copy = simplify(&mesh, &copy).expect("valid");
+    assert_eq!(copy.stop, Stop::TargetAboveInput);
 }
 
 #[test]
@@ -252,13 +235,9 @@ fn one_side_lets_a_spike_go_and_both_sides_keep_it() {
         .find(|p| (p.x - 0.5).abs() + (p.y - 0.5).abs() < 1e-12);
     middle.expect("a vertex").z = 0.5;
     let mesh = canonical(&Mesh::new(parts).expect("valid")).mesh;
-    let one = within(
-        &mesh,
-        ToleranceOptions {
-            one_sided: true,
-            ..share(0.1)
-        },
-    );
+    let mut one_sided = share(0.1);
+    one_sided.one_sided = true;
+    let one = within(&mesh, one_sided);
     let both = within(&mesh, share(0.1));
     let top = |m: &Mesh| m.positions().iter().map(|p| p.z).fold(0.0, f64::max);
     assert!(top(&both.mesh) > 0.3, "{}", top(&both.mesh));
@@ -277,43 +256,19 @@ fn needles_folds_and_sheets_that_meet_are_kept_within_the_bound() {
             p.z = 1e-3;
         }
     }
-    let meshes = [
-        // Two needles between usual triangles.
-        Mesh::from_triangles(
-            vec![DVec3::ZERO, DVec3::X, DVec3::Y, -DVec3::Y, needle],
-            vec![[0, 4, 2], [4, 1, 2], [0, 1, 4], [0, 3, 1]],
-        ),
-        Mesh::new(folded),
-        // Three sheets at one edge.
-        Mesh::from_triangles(
-            vec![
-                DVec3::ZERO,
-                DVec3::X,
-                DVec3::Y,
-                DVec3::Z,
-                -DVec3::Y,
-                DVec3::X * 0.5,
-            ],
-            vec![
-                [0, 5, 2],
-                [5, 1, 2],
-                [0, 5, 3],
-                [5, 1, 3],
-                [0, 5, 4],
-                [5, 1, 4],
-            ],
-        ),
-    ];
-    for mesh in meshes {
-        let mesh = canonical(&mesh.expect("valid")).mesh;
-        for own in [
-            share(0.02),
-            ToleranceOptions {
-                volume: Some(Source::Edges),
-                growing: true,
-                ..share(0.02)
-            },
-        ] {
+    let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
+    // Two needles between usual triangles.
+    let needles = [[0, 4, 2], [4, 1, 2], [0, 1, 4], [0, 3, 1]];
+    let needles = mesh_of([o, x, y, -y, needle], needles);
+    // Three sheets at one edge.
+    let sheets = [2, 3, 4].map(|v| [[0, 5, v], [5, 1, v]]).concat();
+    let sheets = mesh_of([o, x, y, z, -y, x * 0.5], sheets);
+    let mut growing = share(0.02);
+    growing.volume = Some(Source::Edges);
+    growing.growing = true;
+    for mesh in [needles, Mesh::new(folded).expect("valid"), sheets] {
+        let mesh = canonical(&mesh).mesh;
+        for own in [share(0.02), growing] {
             let outcome = within(&mesh, own);
             let bound = 0.02 * diagonal(&mesh);
             assert!(farthest(&outcome.mesh, &mesh, 10) <= bound);
@@ -335,14 +290,10 @@ fn a_mesh_far_from_the_origin_or_of_another_size_is_bounded_as_well() {
         let outcome = within(&mesh, share(0.03));
         let bound = 0.03 * diagonal(&mesh);
         assert!(outcome.mesh.triangles().len() < mesh.triangles().len());
-        assert!(
-            farthest(&outcome.mesh, &mesh, 5) <= bound,
-            "size {size}, shift {shift}"
-        );
-        assert!(
-            farthest(&mesh, &outcome.mesh, 5) <= bound,
-            "size {size}, shift {shift}"
-        );
+        for (from, to) in [(&outcome.mesh, &mesh), (&mesh, &outcome.mesh)] {
+            let most = farthest(from, to, 5);
+            assert!(most <= bound, "size {size}, shift {shift}");
+        }
     }
 }
 

@@ -17,7 +17,9 @@ use lodmark::{
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
 
-use crate::support::{bounded, expect, folder, meshes, put, same_on_all_threads, split};
+use crate::support::{
+    angle_between, at, bounded, expect, folder, json, meshes, put, same_on_all_threads,
+};
 
 fn run_to(mesh: &Mesh, cell: &ViewCell, degrees: f64, target: Target) -> Outcome {
     let own = ViewBoundedOptions::new(cell.clone(), degrees);
@@ -33,16 +35,8 @@ fn verified(mesh: &Mesh, outcome: &Outcome, cell: &ViewCell, degrees: f64) -> An
     let mut bytes = Vec::new();
     map.write(mesh, &outcome.mesh, &mut bytes).expect("memory");
     let record = Record::from_bytes(&bytes, "a.corr").expect("just written");
-    angles(
-        mesh,
-        &outcome.mesh,
-        cell,
-        degrees,
-        Some(&record),
-        3_000,
-        &Silent,
-    )
-    .expect("fits")
+    let (low, record) = (&outcome.mesh, Some(&record));
+    angles(mesh, low, cell, degrees, record, 3_000, &Silent).expect("fits")
 }
 
 /// One cell of every kind, in front of a model of size 2 around the origin.
@@ -71,10 +65,8 @@ fn every_kind_of_cell_bounds_what_it_says() {
         let report = verified(&mesh, &outcome, &cell, 0.2);
         assert!(report.holds, "{cell:?}: {report:?}");
         // The bound is used up, not wasted.
-        assert!(
-            report.worst.expect("sightings").angle_deg > 0.1,
-            "{cell:?}: {report:?}"
-        );
+        let seen = report.worst.expect("sightings").angle_deg;
+        assert!(seen > 0.1, "{cell:?}: {report:?}");
     }
 }
 
@@ -103,26 +95,16 @@ fn a_mesh_far_from_the_origin_keeps_its_bound_to_the_last_digits() {
         let shape = cell.relative_to(-offset);
         let degrees = 2e-4;
         let outcome = run(&mesh, &shape, degrees);
-        assert!(
-            outcome.mesh.triangles().len() < mesh.triangles().len(),
-            "cell {i}"
-        );
+        let left = outcome.mesh.triangles().len();
+        assert!(left < mesh.triangles().len(), "cell {i}");
         let report = verified(&mesh, &outcome, &shape, degrees);
-        assert!(report.holds, "cell {i}: {report:?}");
-        assert!(
-            report
-                .at_most_deg
-                .is_some_and(|most| most <= degrees * (1.0 + 1e-4)),
-            "cell {i}: {report:?}"
-        );
+        let most = report.at_most_deg.unwrap_or(f64::INFINITY);
+        let bounded = report.holds && most <= degrees * (1.0 + 1e-4);
+        assert!(bounded, "cell {i}: {report:?}");
         // Looked at again from the offset, where differences are exact, by nothing but the record's corners.
         let map = outcome.correspondence().expect("this method keeps account");
-        let eyes: Vec<DVec3> = shape
-            .corners()
-            .unwrap_or_default()
-            .iter()
-            .map(|v| v - offset)
-            .collect();
+        let corners = shape.corners().unwrap_or_default();
+        let eyes: Vec<DVec3> = corners.iter().map(|v| v - offset).collect();
         for face in 0..map.face_count() as u32 {
             let to = outcome.mesh.corners(face as usize).map(|p| p - offset);
             for piece in map.pieces(face) {
@@ -132,8 +114,7 @@ fn a_mesh_far_from_the_origin_keeps_its_bound_to_the_last_digits() {
                         |[a, b, c]: [DVec3; 3], [u, v]: [f64; 2]| a * (1.0 - u - v) + b * u + c * v;
                     let (p, s) = (at(from, corner.source.get()), at(to, corner.target.get()));
                     for &eye in &eyes {
-                        let (p, s) = (p - eye, s - eye);
-                        let seen = libm::atan2(p.cross(s).length(), p.dot(s)).to_degrees();
+                        let seen = angle_between(eye, p, s).to_degrees();
                         assert!(seen <= degrees * (1.0 + 1e-6), "cell {i}: {seen}");
                     }
                 }
@@ -162,8 +143,8 @@ fn an_angle_of_nothing_collapses_nothing_and_one_of_90_degrees_is_refused() {
 #[test]
 fn what_a_cell_touches_stays_as_it_is() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
-    let through = ViewCell::segment([DVec3::new(0.2, 0.1, -2.0), DVec3::new(0.2, 0.1, 2.0)])
-        .expect("a segment");
+    let through = [at(0.2, 0.1, -2.0), at(0.2, 0.1, 2.0)];
+    let through = ViewCell::segment(through).expect("a segment");
     let on = ViewCell::point(mesh.positions()[7]).expect("a point");
     let inside = ViewCell::cuboid(DVec3::splat(-0.1), DVec3::splat(0.1)).expect("a box");
     for cell in [&through, &on, &inside] {
@@ -181,10 +162,8 @@ fn a_target_stops_before_the_bound_and_a_target_above_the_input_copies_it() {
     let mesh = canonical(&generate::icosphere(3)).mesh;
     let cell = &cells()[1];
     let outcome = run_to(&mesh, cell, 5.0, Target::Triangles(600));
-    assert_eq!(
-        (outcome.mesh.triangles().len(), outcome.stop),
-        (600, Stop::TargetReached)
-    );
+    assert_eq!(outcome.mesh.triangles().len(), 600);
+    assert_eq!(outcome.stop, Stop::TargetReached);
     assert!(verified(&mesh, &outcome, cell, 5.0).holds);
     let copy = run_to(&mesh, cell, 5.0, Target::Triangles(9999));
     assert_eq!((&copy.mesh, copy.stop), (&mesh, Stop::TargetAboveInput));
@@ -287,51 +266,39 @@ fn the_command_bounds_verifies_and_refuses() {
     put(&dir, "in.ply", &generate::icosphere(3));
     let cell = r#"{"schema": 1, "cell": {"segment": [[-1, 0, 5], [1, 0, 5]]}}"#;
     std::fs::write(dir.path().join("c.json"), cell).expect("writes");
-    let simplify = |more: &[&str], exit| {
-        expect(
-            &dir,
-            exit,
-            &[
-                &["simplify", "in.ply", "out.ply", "--method", "view-bounded"],
-                more,
-            ]
-            .concat(),
-        )
+    let simplify = |more: &str, exit| {
+        let words = "simplify in.ply out.ply --method view-bounded";
+        expect(&dir, exit, &format!("{words} {more}"))
     };
-    let bounded = split("--cell c.json --error-deg 0.5 --bound-out b.corr --strict");
-    let said = simplify(&bounded, 0);
-    assert!(
-        said.contains("breaks the bound or a rule") && said.contains("bound:"),
-        "{said}"
-    );
-    let verify = split("verify in.ply out.ply --cell c.json --bound b.corr --samples 1000");
-    expect(&dir, 0, &[&verify[..], &["--error-deg", "0.5"]].concat());
-    expect(&dir, 1, &[&verify[..], &["--error-deg", "0.2"]].concat());
+    let bounded = "--cell c.json --error-deg 0.5 --bound-out b.corr --strict";
+    let said = simplify(bounded, 0);
+    let told = said.contains("breaks the bound or a rule") && said.contains("bound:");
+    assert!(told, "{said}");
+    let verify = "verify in.ply out.ply --cell c.json --bound b.corr --samples 1000";
+    expect(&dir, 0, &format!("{verify} --error-deg 0.5"));
+    expect(&dir, 1, &format!("{verify} --error-deg 0.2"));
     // Half a degree is what one pixel takes up on a screen of two hundred or so.
     simplify(
-        &split("--cell c.json --error-px 1 --screen-height 114 --fov 57 --json r.json"),
+        "--cell c.json --error-px 1 --screen-height 114 --fov 57 --json r.json",
         0,
     );
-    let text = std::fs::read_to_string(dir.path().join("r.json")).expect("a report");
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let degrees = json["options"]["method"]["error-deg"]
-        .as_f64()
-        .expect("resolved");
+    let method = &json(&dir, "r.json")["options"]["method"];
+    let degrees = method["error-deg"].as_f64().expect("resolved");
     assert!((degrees - 0.5457).abs() < 1e-3, "{degrees}");
-    assert!(json["options"]["method"]["cell"]["segment"].is_array());
+    assert!(method["cell"]["segment"].is_array());
     for wrong in [
-        &["--cell", "c.json"][..],
-        &["--error-deg", "1"],
-        &["-t", "100"],
-        &["--cell", "c.json", "--error-px", "1"],
-        &split("--cell c.json --error-deg 1 --error-px 1 --screen-height 9"),
-        &["--cell", "c.json", "--error-deg", "90"],
-        &["--cell", "c.json", "--error-deg", "1", "--preset", "fast"],
+        "--cell c.json",
+        "--error-deg 1",
+        "-t 100",
+        "--cell c.json --error-px 1",
+        "--cell c.json --error-deg 1 --error-px 1 --screen-height 9",
+        "--cell c.json --error-deg 90",
+        "--cell c.json --error-deg 1 --preset fast",
     ] {
         simplify(wrong, 2);
     }
-    simplify(&["--cell", "none.json", "--error-deg", "1"], 5);
-    simplify(&["--cell", "in.ply", "--error-deg", "1"], 3);
+    simplify("--cell none.json --error-deg 1", 5);
+    simplify("--cell in.ply --error-deg 1", 3);
     expect(
         &dir,
         2,

@@ -1,9 +1,9 @@
 //! Where textures, quads and the ground that is free of viewers end.
 
-use glam::DVec3;
-use lodmark::mesh::{Mesh, generate};
+use lodmark::mesh::generate;
 
 use super::{before_the_city, blocks, cloud, in_the_forest, within};
+use crate::support::{at, mesh_of};
 
 #[test]
 fn a_filter_mixes_no_texel_with_nothing() {
@@ -36,23 +36,12 @@ fn a_filter_mixes_no_texel_with_nothing() {
 
 #[test]
 fn a_wall_behind_the_plane_of_viewers_is_not_moved() {
-    let positions = [
-        [0.0, -8.0, 0.0],
-        [2.0, -8.0, 0.0],
-        [0.0, -8.0, 3.0],
-        [0.0, -7.0, 0.0],
-        [0.0, -3.0, 0.0],
-        [0.0, -3.0, 3.0],
-        [0.0, 2.0, 0.0],
-        [2.0, 2.0, 0.0],
-        [0.0, 2.0, 3.0],
-    ];
-    let mesh = Mesh::from_triangles(
-        positions.map(DVec3::from_array).to_vec(),
-        // Among the viewers, through their border, before them.
-        vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
-    )
-    .expect("indices");
+    // Among the viewers, through their border, before them.
+    let among = [at(0.0, -8.0, 0.0), at(2.0, -8.0, 0.0), at(0.0, -8.0, 3.0)];
+    let through = [at(0.0, -7.0, 0.0), at(0.0, -3.0, 0.0), at(0.0, -3.0, 3.0)];
+    let before = [at(0.0, 2.0, 0.0), at(2.0, 2.0, 0.0), at(0.0, 2.0, 3.0)];
+    let faces = [[0, 1, 2], [3, 4, 5], [6, 7, 8]];
+    let mesh = mesh_of([among, through, before].concat(), faces);
     let cloud = cloud(&mesh, &before_the_city(), &within(1.0));
     assert_eq!(cloud.kept, [0, 1]);
     assert_eq!(cloud.quads.len(), 1);
@@ -64,11 +53,8 @@ fn a_wall_beside_a_plane_that_takes_it_too_is_drawn_there_against_cracks() {
     let cloud = cloud(&mesh, &in_the_forest(), &within(0.5));
     let mut shared = 0;
     for quad in cloud.quads.iter().filter(|q| !q.horizontal) {
-        assert!(
-            quad.replaces
-                .iter()
-                .all(|t| quad.drawn.binary_search(t).is_ok())
-        );
+        let is_drawn = |t| quad.drawn.binary_search(t).is_ok();
+        assert!(quad.replaces.iter().all(is_drawn));
         shared += quad.drawn.len() - quad.replaces.len();
     }
     assert!(shared > 0, "nothing is drawn twice");
