@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde_json::json;
+
 use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
@@ -48,9 +50,8 @@ impl BillboardsArgs {
             (Some(degrees), _) => Limit::Angle(Aperture::degrees(degrees)?),
             (None, Some(distance)) => Limit::Distance(distance),
             (None, None) => {
-                return Err(Error::Usage(
-                    "no bound; give --error-deg or --error-abs".into(),
-                ));
+                let told = "no bound; give --error-deg or --error-abs";
+                return Err(Error::Usage(told.into()));
             }
         };
         Ok(billboards::BillboardOptions {
@@ -63,35 +64,28 @@ impl BillboardsArgs {
     }
 }
 
-pub(super) fn run(
-    options: &BillboardsArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    let wanted = options.resolved()?;
-    let cell = view_cell::file::read(&options.cell)?;
-    let mesh = input::read(&options.input, true, terminal)?;
-    input::require_triangles(&options.input, &mesh)?;
+pub(super) fn run(args: &BillboardsArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let wanted = args.resolved()?;
+    let cell = view_cell::file::read(&args.cell)?;
+    let mesh = input::read(&args.input, true, terminal)?;
+    input::require_triangles(&args.input, &mesh)?;
     let cloud = billboards::billboards(&mesh, &cell, &wanted, terminal)?;
-    let path = billboards::files::write(&options.folder, &cloud, &mesh, terminal)?;
+    let path = billboards::files::write(&args.folder, &cloud, &mesh, terminal)?;
     let horizontal = cloud.quads.iter().filter(|q| q.horizontal).count();
     let most = |q: &&billboards::Quad| q.texels.contains(&wanted.texels);
     let coarse = cloud.quads.iter().filter(most).count();
-    let degrees = |angle: f64| angle * (180.0 / std::f64::consts::PI);
-    let (across, along) = (
-        degrees(cloud.displacement.horizontal),
-        degrees(cloud.displacement.vertical),
-    );
+    let moved = [cloud.displacement.horizontal, cloud.displacement.vertical];
+    let [across, along] = moved.map(|angle| angle * (180.0 / std::f64::consts::PI));
     report(
         common,
         "billboards",
-        serde_json::json!({
-            "input": options.input, "cell": options.cell, "error_deg": options.error_deg,
-            "error_abs": options.error_abs, "up": options.up, "directions": wanted.directions,
+        json!({
+            "input": args.input, "cell": args.cell, "error_deg": args.error_deg,
+            "error_abs": args.error_abs, "up": args.up, "directions": wanted.directions,
             "texels": wanted.texels, "any_height": wanted.any_height,
         }),
-        serde_json::json!({
-            "folder": options.folder, "triangles_in": mesh.triangles().len(), "quads": cloud.quads.len(),
+        json!({
+            "folder": args.folder, "triangles_in": mesh.triangles().len(), "quads": cloud.quads.len(),
             "quads_vertical": cloud.quads.len() - horizontal, "quads_horizontal": horizontal,
             "triangles_kept": cloud.kept.len(), "quads_at_texel_limit": coarse,
             "displacement_horizontal_deg": across, "displacement_vertical_deg": along,

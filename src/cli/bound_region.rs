@@ -11,7 +11,7 @@ use crate::{
         region::{self, Profile},
         view_cell::{Shape, ViewCell, file},
     },
-    cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
+    cli::{Common, Verdict, file_help, has_extension, input, report, terminal::Terminal},
     encode::atomic,
     io,
     mesh::{Mesh, MeshParts},
@@ -52,83 +52,67 @@ pub(super) struct BoundRegionArgs {
     subdivisions: Option<u32>,
 }
 
-pub(super) fn run(
-    options: &BoundRegionArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    let svg = options
-        .output
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("svg"));
+pub(super) fn run(args: &BoundRegionArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let svg = has_extension(&args.output, "svg");
     if !svg {
-        io::writable_format(&options.output)?;
+        io::writable_format(&args.output)?;
     }
     let misplaced = if svg {
-        options.subdivisions.map(|_| "--subdivisions is for a mesh")
-    } else if options.directions.is_some() || options.normal.is_some() {
+        args.subdivisions.map(|_| "--subdivisions is for a mesh")
+    } else if args.directions.is_some() || args.normal.is_some() {
         Some("--directions and --normal are for a figure (.svg)")
     } else {
         None
     };
     if let Some(what) = misplaced {
-        return Err(Error::Usage(format!(
-            "{what}; {} is none",
-            options.output.display()
-        )));
+        let told = format!("{what}; {} is none", args.output.display());
+        return Err(Error::Usage(told));
     }
-    input::require_outputs([&options.output].into_iter().chain(common.json.iter()))?;
-    let aperture = Aperture::degrees(options.error_deg)?;
-    let cell = file::read(&options.cell)?;
-    let directions = options.directions.unwrap_or(720);
-    let subdivisions = options.subdivisions.unwrap_or(4);
-    for p in options.points.iter().filter(|&&p| cell.contains(p)) {
+    input::require_outputs([&args.output].into_iter().chain(&common.json))?;
+    let aperture = Aperture::degrees(args.error_deg)?;
+    let cell = file::read(&args.cell)?;
+    let directions = args.directions.unwrap_or(720);
+    let subdivisions = args.subdivisions.unwrap_or(4);
+    for p in args.points.iter().filter(|&&p| cell.contains(p)) {
         terminal.say(&format!(
             "the point {p} lies in the cell, where viewers may stand on it: it may not move at all"
         ));
     }
     if svg {
-        let text = options.figure(&cell, aperture, directions)?;
-        atomic::write(&options.output, |file| file.write_all(text.as_bytes()))?;
+        let text = args.figure(&cell, aperture, directions)?;
+        atomic::write_bytes(&args.output, text.as_bytes())?;
     } else {
-        let shells: Vec<Mesh> = options
-            .points
-            .iter()
-            .map(|&p| region::shell(&cell, p, aperture, subdivisions, options.reach))
-            .collect::<Result<_>>()?;
-        io::write(&options.output, &together(shells)?)?;
+        let shell = |&p| region::shell(&cell, p, aperture, subdivisions, args.reach);
+        let shells = args.points.iter().map(shell).collect::<Result<_>>()?;
+        io::write(&args.output, &together(shells)?)?;
     }
-    let points: Vec<[f64; 3]> = options.points.iter().map(DVec3::to_array).collect();
+    let points: Vec<[f64; 3]> = args.points.iter().map(DVec3::to_array).collect();
     report(
         common,
         "bound-region",
         serde_json::json!({
-            "cell": cell, "points": points, "error_deg": options.error_deg, "reach": options.reach,
-            "normal": options.normal.map(|n| n.to_array()), "directions": svg.then_some(directions),
+            "cell": cell, "points": points, "error_deg": args.error_deg, "reach": args.reach,
+            "normal": args.normal.map(|n| n.to_array()), "directions": svg.then_some(directions),
             "subdivisions": (!svg).then_some(subdivisions),
         }),
-        serde_json::json!({ "output": options.output }),
+        serde_json::json!({ "output": args.output }),
     )?;
-    answer!(
-        "{}: {} validity regions for {} degrees",
-        options.output.display(),
-        options.points.len(),
-        options.error_deg
-    );
+    let (output, count, degrees) = (args.output.display(), points.len(), args.error_deg);
+    answer!("{output}: {count} validity regions for {degrees} degrees");
     Ok(Verdict::Good)
 }
 
 impl BoundRegionArgs {
     fn figure(&self, cell: &ViewCell, aperture: Aperture, directions: u32) -> Result<String> {
         let first = self.points.first().copied().unwrap_or_default();
-        let normal = self
-            .normal
-            .unwrap_or_else(|| region::profile_normal(cell, first));
-        let profiles: Vec<Profile> = self
+        let normal = || region::profile_normal(cell, first);
+        let normal = self.normal.unwrap_or_else(normal);
+        let profile = |&p| region::profile(cell, p, normal, aperture, directions, self.reach);
+        let profiles = self
             .points
             .iter()
-            .map(|&p| region::profile(cell, p, normal, aperture, directions, self.reach))
-            .collect::<Result<_>>()?;
+            .map(profile)
+            .collect::<Result<Vec<_>>>()?;
         Ok(svg(&self.points, &profiles, cell))
     }
 }
@@ -190,10 +174,8 @@ fn svg(points: &[DVec3], profiles: &[Profile], cell: &ViewCell) -> String {
     };
     // Down the page.
     let flat = |p: DVec3| [(p - points[0]).dot(x), -(p - points[0]).dot(y)];
-    let outlines: Vec<Vec<[f64; 2]>> = profiles
-        .iter()
-        .map(|profile| profile.outline.iter().map(|&p| flat(p)).collect())
-        .collect();
+    let outline = |profile: &Profile| profile.outline.iter().map(|&p| flat(p)).collect();
+    let outlines: Vec<Vec<[f64; 2]>> = profiles.iter().map(outline).collect();
     let trace = Trace::of(cell, points[0], [x, y]);
     let corners = cell.corners().unwrap_or_default();
     let cell: Vec<[f64; 2]> = corners.iter().map(|&p| flat(p)).collect();
@@ -203,10 +185,8 @@ fn svg(points: &[DVec3], profiles: &[Profile], cell: &ViewCell) -> String {
         page.trace(trace);
     }
     for (outline, &point) in outlines.iter().zip(points) {
-        page.polygon(
-            outline,
-            "fill=\"#cfe0f5\" stroke=\"#1f4e96\" stroke-width=\"1.5\"",
-        );
+        let style = "fill=\"#cfe0f5\" stroke=\"#1f4e96\" stroke-width=\"1.5\"";
+        page.polygon(outline, style);
         page.circle(flat(point), 3, "#1f4e96");
     }
     for (i, &a) in cell.iter().enumerate() {
@@ -308,11 +288,9 @@ fn together(meshes: Vec<Mesh>) -> Result<Mesh> {
 
 /// Three numbers with commas between them.
 fn parse_point(text: &str) -> Result<DVec3, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|part| part.trim().parse::<f64>())
-        .collect::<Result<_, _>>()
-        .map_err(|e| format!("{e}; expected three numbers as in 1,0,-2.5"))?;
+    let numbers = text.split(',').map(|part| part.trim().parse::<f64>());
+    let numbers = numbers.collect::<Result<Vec<_>, _>>();
+    let numbers = numbers.map_err(|e| format!("{e}; expected three numbers as in 1,0,-2.5"))?;
     match numbers[..] {
         [x, y, z] if numbers.iter().all(|n| n.is_finite()) => Ok(DVec3::new(x, y, z)),
         _ => Err("expected three numbers as in 1,0,-2.5".into()),

@@ -20,15 +20,7 @@ pub(super) fn run(options: &CheckArgs, common: &Common, terminal: &Terminal) -> 
     let mesh = input::read(&options.input, !options.no_weld, terminal)?;
     let findings = Findings::of(&mesh);
     answer!("{}", findings.report().trim_end());
-    report(
-        common,
-        "check",
-        serde_json::json!({ "input": options.input }),
-        &findings,
-    )?;
-    Ok(if findings.clean {
-        Verdict::Good
-    } else {
-        Verdict::Negative
-    })
+    let resolved = serde_json::json!({ "input": options.input });
+    report(common, "check", resolved, &findings)?;
+    Ok(Verdict::of(findings.clean))
 }

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use super::{
-    Common, Verdict, contact_sheet::contact_sheet, file_help, input, report, terminal::Terminal,
-};
+use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    encode::png,
+    encode::{
+        png,
+        sheet::{PADDING, sheet},
+    },
     num::fixed::SubpixelBits,
     raster::{self, Grid, Scene},
     validate::rays::{Class, Classified, RayCaster, Shown, Tally, cap},
@@ -44,17 +45,8 @@ pub(super) struct CheckRaysArgs {
 
 impl CheckRaysArgs {
     fn set(&self, sphere: &Sphere) -> Result<ViewSet> {
-        let projection = if self.orthographic {
-            Projection::Orthographic
-        } else {
-            Projection::Perspective
-        };
-        let mut set = view::resolve(
-            &self.views,
-            sphere,
-            [self.size.unwrap_or(480); 2],
-            projection,
-        )?;
+        let (size, projection) = (self.size.unwrap_or(480), Projection::of(self.orthographic));
+        let mut set = view::resolve(&self.views, sphere, [size; 2], projection)?;
         if let ViewsName::File(path) = &self.views {
             if self.size.is_some() || self.orthographic {
                 return Err(Error::Usage(format!(
@@ -72,32 +64,25 @@ impl CheckRaysArgs {
     }
 }
 
-pub(super) fn run(
-    options: &CheckRaysArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    if options.cap.is_some_and(|cap| !(0.0..=1.0).contains(&cap)) {
-        return Err(Error::Usage(
-            "--cap is a share of all pixels; expected 0 to 1".into(),
-        ));
+pub(super) fn run(args: &CheckRaysArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    if args.cap.is_some_and(|cap| !(0.0..=1.0).contains(&cap)) {
+        let told = "--cap is a share of all pixels; expected 0 to 1";
+        return Err(Error::Usage(told.into()));
     }
-    input::require_outputs(options.picture.iter().chain(&common.json))?;
-    let mesh = input::read(&options.input, true, terminal)?;
-    input::require_triangles(&options.input, &mesh)?;
+    input::require_outputs(args.picture.iter().chain(&common.json))?;
+    let mesh = input::read(&args.input, true, terminal)?;
+    input::require_triangles(&args.input, &mesh)?;
     let frame = frame_of(&mesh);
     let sphere = Sphere::of_mesh(&mesh)
         .ok_or_else(|| Error::Internal("a mesh with triangles has a bounding sphere".into()))?;
-    let set = options.set(&sphere)?.enter_frame(frame);
-    let cap = options.cap.unwrap_or(cap(set.subpixel));
-    if options.picture.is_some() {
+    let set = args.set(&sphere)?.enter_frame(frame);
+    let cap = args.cap.unwrap_or(cap(set.subpixel));
+    if args.picture.is_some() {
         require_sheet(&set)?;
     }
     let mesh = mesh.enter_frame(frame);
     let (scene, caster) = (Scene::of(&mesh), RayCaster::new(mesh.in_frame_units()));
-    let mut tally = Tally::default();
-    let mut pictures = Vec::new();
-    let mut dropped = 0;
+    let (mut tally, mut pictures, mut dropped) = (Tally::default(), Vec::new(), 0);
     for (i, view) in set.views.iter().enumerate() {
         terminal.step("cast rays", i as u64, set.views.len() as u64)?;
         let picture = raster::keys(&scene, view, &set);
@@ -105,7 +90,7 @@ pub(super) fn run(
         let rays = caster.keys(view, &set, terminal)?;
         let classified = caster.classify(&set, i, [&picture.keys, &rays], terminal)?;
         tally.add(&classified);
-        if options.picture.is_some() {
+        if args.picture.is_some() {
             pictures.push((colored(&classified), format!("view {i}")));
         }
     }
@@ -114,25 +99,19 @@ pub(super) fn run(
             "{dropped} triangles were not drawn: a coordinate is not finite in a view"
         ));
     }
-    let verdict = if tally.passes(cap) {
-        Verdict::Good
-    } else {
-        Verdict::Negative
-    };
-    if let Some(path) = &options.picture {
+    let verdict = Verdict::of(tally.passes(cap));
+    if let Some(path) = &args.picture {
         let columns = columns(pictures.len()) as u32;
-        png::write_rgb(path, &contact_sheet(&pictures, columns)?)?;
+        png::write_rgb(path, &sheet(&pictures, columns, PADDING)?)?;
     }
-    let perspective = set
-        .views
-        .iter()
-        .any(|v| matches!(v.eye, view::Eye::Point(_)));
+    let mut views = set.views.iter();
+    let perspective = views.any(|v| matches!(v.eye, view::Eye::Point(_)));
     let culled = set.views.iter().any(|v| v.cull != Cull::None);
     report(
         common,
         "check-rays",
         serde_json::json!({
-            "input": options.input, "views": options.views.to_string(), "width": set.width, "height": set.height,
+            "input": args.input, "views": args.views.to_string(), "width": set.width, "height": set.height,
             "samples": set.samples, "subpixel_bits": set.subpixel.bits(), "perspective": perspective,
             "culled": culled, "cap": cap,
         }),
@@ -156,10 +135,8 @@ fn tell(tally: &Tally, set: &ViewSet, cap: f64, verdict: Verdict) {
         tally.pixels
     );
     if tally.grid_exact_views > 0 {
-        answer!(
-            "{} of the views need no rounding: there nothing may differ",
-            tally.grid_exact_views
-        );
+        let exact = tally.grid_exact_views;
+        answer!("{exact} of the views need no rounding: there nothing may differ");
     }
     for class in Class::ALL {
         let count = tally.of(class);
@@ -180,26 +157,19 @@ fn tell(tally: &Tally, set: &ViewSet, cap: f64, verdict: Verdict) {
             (Some(id), None) => format!("triangle {id} (depth {})", s.depth),
             (None, _) => "nothing".into(),
         };
-        answer!(
-            "  {}: view {} pixel ({}, {}): raster {}, ray {}",
-            w.class.name(),
-            w.view,
-            w.x,
-            w.y,
-            shown(&w.raster),
-            shown(&w.rays)
-        );
+        let (class, view, x, y) = (w.class.name(), w.view, w.x, w.y);
+        let (raster, ray) = (shown(&w.raster), shown(&w.rays));
+        answer!("  {class}: view {view} pixel ({x}, {y}): raster {raster}, ray {ray}");
     }
+    let judgement = match verdict {
+        Verdict::Good => "the rasterizer shows what rays hit",
+        Verdict::Negative => "NOT what rays hit",
+    };
     answer!(
-        "{} unexplained, {} explained ({:.2e} of all, at most {cap:.0e} expected): {}",
+        "{} unexplained, {} explained ({:.2e} of all, at most {cap:.0e} expected): {judgement}",
         tally.unexplained(),
         tally.explained(),
-        tally.explained_share(),
-        if verdict == Verdict::Good {
-            "the rasterizer shows what rays hit"
-        } else {
-            "NOT what rays hit"
-        }
+        tally.explained_share()
     );
 }
 
@@ -211,11 +181,10 @@ fn colored(view: &Classified) -> Grid<[u8; 3]> {
     order.sort_by_key(|w| w.class);
     for w in order {
         for (dx, dy) in [(0, 0), (1, 0), (2, 0), (0, 1), (0, 2)] {
-            for (x, y) in [
-                (w.x.checked_add(dx), w.y.checked_add(dy)),
-                (w.x.checked_sub(dx), w.y.checked_sub(dy)),
-            ] {
-                if let (Some(x), Some(y)) = (x, y)
+            let below = (w.x.checked_add(dx), w.y.checked_add(dy));
+            let above = (w.x.checked_sub(dx), w.y.checked_sub(dy));
+            for place in [below, above] {
+                if let (Some(x), Some(y)) = place
                     && x < width
                     && y < height
                 {
@@ -230,11 +199,7 @@ fn colored(view: &Classified) -> Grid<[u8; 3]> {
 
 /// Columns of a sheet that is as square as it comes.
 fn columns(views: usize) -> usize {
-    let mut columns = 1;
-    while columns * columns < views {
-        columns += 1;
-    }
-    columns
+    (1..views).find(|c| c * c >= views).unwrap_or(1)
 }
 
 /// Refuses a sheet that no picture holds: before long work, not after it.

@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{Common, Verdict, contact_sheet::contact_sheet, report, terminal::Terminal};
+use super::{Common, Verdict, report, terminal::Terminal};
 use crate::{
     Error, Progress, Result,
-    encode::{json, png},
+    encode::{
+        atomic, json, png,
+        sheet::{PADDING, sheet},
+    },
     io,
     mesh::{Mesh, canonical, content_sha256, generate},
     metric::{
@@ -60,39 +63,23 @@ struct Judged {
 
 pub(super) fn run(options: &DemoArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let folder = &options.folder;
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    atomic::folder(folder)?;
     let mut found = Vec::new();
     let mut tiles: Vec<(Grid<u8>, String)> = Vec::new();
-    for &(name, extension, share) in SCENES {
+    for &about in SCENES {
         terminal.step("demo", found.len() as u64, 3 * SCENES.len() as u64)?;
-        scene(
-            folder,
-            (name, extension, share),
-            terminal,
-            &mut found,
-            &mut tiles,
-        )?;
+        scene(folder, about, terminal, &mut found, &mut tiles)?;
     }
-    let picture = contact_sheet(&tiles, 4)?;
+    let picture = sheet(&tiles, 4, PADDING)?;
     let sheet_file = folder.join("sheet.png");
     png::write_grey(&sheet_file, &picture)?;
     json::write(&folder.join("report.json"), &found)?;
-    report(
-        common,
-        "demo",
-        serde_json::json!({ "folder": folder }),
-        serde_json::json!({ "results": found }),
-    )?;
-    answer!(
-        "{:16} {:12} {:>9} {:>9} {:>9} {:>9}",
-        "scene",
-        "method",
-        "triangles",
-        "rms flat",
-        "gouraud",
-        "distance"
-    );
+    let resolved = serde_json::json!({ "folder": folder });
+    let results = serde_json::json!({ "results": found });
+    report(common, "demo", resolved, results)?;
+    answer!("scene            method       triangles  rms flat   gouraud  distance");
     for r in &found {
+        let distance = r.distance_mean.map(|d| format!("{:.4} %", 100.0 * d));
         answer!(
             "{:16} {:12} {:>9} {:>9.2} {:>9.2} {:>9}",
             r.scene,
@@ -100,8 +87,7 @@ pub(super) fn run(options: &DemoArgs, common: &Common, terminal: &Terminal) -> R
             r.triangles_out,
             r.rms_flat,
             r.rms_gouraud,
-            r.distance_mean
-                .map_or_else(|| "-".into(), |d| format!("{:.4} %", 100.0 * d))
+            distance.unwrap_or_else(|| "-".into())
         );
     }
     answer!("\nlook at  {}", sheet_file.display());
@@ -131,7 +117,8 @@ fn scene(
     io::write(&folder.join(format!("{name}.{extension}")), &mesh)?;
     let amount = Target::Ratio(share);
     let methods = [
-        by_images(amount),
+        // The recipe for who is in a hurry, so that the demo ends within a minute.
+        RunOptions::image(amount).preset(Preset::Fast),
         RunOptions::memoryless(amount),
         RunOptions::quadric(amount),
     ];
@@ -149,18 +136,15 @@ fn scene(
     let triangles_in = mesh.triangles().len();
     let mut above = vec![(reference.clone(), format!("{name}  {triangles_in}"))];
     let mut below = vec![(reference.map(|_| 255), String::new())];
-    for (((method, mesh), report), picture) in results
-        .iter()
-        .zip(comparison.candidates)
-        .zip(&pictures[1..])
-    {
+    let judged = results.iter().zip(comparison.candidates);
+    for (((method, mesh), report), picture) in judged.zip(&pictures[1..]) {
         let file = format!("{name}-{method}.{extension}");
         io::write(&folder.join(&file), mesh)?;
         let errors = report.errors;
-        let (rms_flat, rms_gouraud) = errors
+        let drawn = errors
             .pictures
-            .map(|pictures| (pictures.rms_flat, pictures.rms_gouraud))
             .ok_or_else(|| Error::Internal("a result that was not drawn".into()))?;
+        let (rms_flat, rms_gouraud) = (drawn.rms_flat, drawn.rms_gouraud);
         let triangles_out = mesh.triangles().len();
         let difference = signed_picture(reference, picture, 2)?;
         below.push((difference, "difference, doubled".into()));
@@ -192,9 +176,4 @@ fn judged_by() -> CompareOptions {
         folds: false,
         ..CompareOptions::default()
     }
-}
-
-/// The recipe for who is in a hurry, so that the demo ends within a minute.
-fn by_images(amount: Target) -> RunOptions {
-    RunOptions::image(amount).preset(Preset::Fast)
 }

@@ -58,29 +58,21 @@ pub(super) fn run(options: &GoldenArgs, common: &Common, terminal: &Terminal) ->
             } else {
                 selfcheck::check_groups(&place.dir, &groups, &items, out)?
             };
-            report(
-                common,
-                "golden",
-                serde_json::json!({ "verb": "check", "dir": place.dir }),
-                serde_json::json!({ "goldens": items.len(), "mismatches": mismatches }),
-            )?;
+            let (dir, all) = (place.dir.display(), items.len());
+            let resolved = serde_json::json!({ "verb": "check", "dir": place.dir });
+            let found = serde_json::json!({ "goldens": all, "mismatches": mismatches });
+            report(common, "golden", resolved, found)?;
             if mismatches.is_empty() {
-                answer!("{}: all {} goldens hold", place.dir.display(), items.len());
+                answer!("{dir}: all {all} goldens hold");
                 return Ok(Verdict::Good);
             }
             for mismatch in &mismatches {
                 answer!("{mismatch}");
             }
-            answer!(
-                "{}: {} of {} goldens do not hold; see {}",
-                place.dir.display(),
-                mismatches.len(),
-                items.len(),
-                out.display()
-            );
+            let (count, out) = (mismatches.len(), out.display());
+            answer!("{dir}: {count} of {all} goldens do not hold; see {out}");
             terminal.say(&format!(
-                "where the change is meant: lodmark golden bless --dir {}, and say why in the commit",
-                place.dir.display()
+                "where the change is meant: lodmark golden bless --dir {dir}, and say why in the commit"
             ));
             Ok(Verdict::Negative)
         }

@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::visibility::{finish, parse_cameras};
+use super::visibility::{finish, parse_cameras, read};
 use crate::{
     Result,
-    encode::bytes,
     mesh::Mesh,
     simplify::visibility::VisibilityOptions,
-    visibility::{MeasureOptions, PartialVisibility, Visibility},
+    visibility::{MeasureOptions, Visibility},
 };
 
 /// Options of the method `visibility`.
@@ -48,9 +47,9 @@ impl GuidanceArgs {
             ("--visibility-size", self.visibility_size.is_some()),
         ];
         given
-            .iter()
+            .into_iter()
             .find(|(_, given)| *given)
-            .map(|(name, _)| *name)
+            .map(|(name, _)| name)
     }
 
     /// The visibility in the file, where one is given.
@@ -63,8 +62,6 @@ impl GuidanceArgs {
         let Some(path) = &self.visibility else {
             return Ok(None);
         };
-        let bytes = bytes::read(path)?;
-        let survey = PartialVisibility::from_bytes(&bytes, path)?;
-        finish(path, &survey, mesh).map(Some)
+        finish(path, &read(path)?, mesh).map(Some)
     }
 }

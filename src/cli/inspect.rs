@@ -29,12 +29,10 @@ struct Contents {
 
 pub(super) fn run(options: &InspectArgs, common: &Common, _: &Terminal) -> Result<Verdict> {
     let loaded = io::read(&options.input)?;
+    let bounds = loaded.mesh.bounds();
     let contents = Contents {
         summary: Summary::of(&loaded),
-        bounds: loaded
-            .mesh
-            .bounds()
-            .map(|(low, high)| [low.to_array(), high.to_array()]),
+        bounds: bounds.map(|(low, high)| [low.to_array(), high.to_array()]),
         bounding_radius: Sphere::of_mesh(&loaded.mesh).map(|s| s.radius),
         content_sha256: content_sha256(&loaded.mesh),
     };
@@ -44,11 +42,7 @@ pub(super) fn run(options: &InspectArgs, common: &Common, _: &Terminal) -> Resul
         answer!("bounding radius     {radius}");
     }
     answer!("content sha256      {}", contents.content_sha256);
-    report(
-        common,
-        "inspect",
-        serde_json::json!({ "input": options.input }),
-        &contents,
-    )?;
+    let resolved = serde_json::json!({ "input": options.input });
+    report(common, "inspect", resolved, &contents)?;
     Ok(Verdict::Good)
 }

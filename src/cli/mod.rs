@@ -13,7 +13,6 @@ mod bound_region;
 mod check;
 mod check_rays;
 mod compare;
-mod contact_sheet;
 mod demo;
 mod file_help;
 mod golden;
@@ -35,23 +34,19 @@ mod visibility;
 use std::{
     io::Write,
     panic::{self, AssertUnwindSafe},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::ExitCode,
 };
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand, error::ErrorKind};
 
-use crate::{Error, Result, parallel};
+use crate::{Error, Result, encode::json, parallel};
 use terminal::Terminal;
 
 /// Simplify 3D meshes by what they look like, with the same bits on every machine and no GPU.
 #[derive(Debug, Parser)]
-#[command(
-    name = "lodmark",
-    version,
-    max_term_width = 110,
-    propagate_version = true
-)]
+#[command(name = "lodmark", version, max_term_width = 110)]
+#[command(propagate_version = true)]
 struct Arguments {
     #[command(flatten)]
     common: Common,
@@ -108,6 +103,13 @@ enum Verdict {
     Good,
     /// Exit code 1: it worked, and the answer is no.
     Negative,
+}
+
+impl Verdict {
+    /// The answer to whether something holds.
+    fn of(holds: bool) -> Self {
+        if holds { Self::Good } else { Self::Negative }
+    }
 }
 
 /// The arguments of the command, with the headings of the help.
@@ -178,13 +180,11 @@ fn run(arguments: Arguments, matches: &ArgMatches) -> Result<Verdict> {
         Command::Other(words) => {
             let name = words.first().cloned().unwrap_or_default();
             Err(if NOT_BUILT.contains(&name.as_str()) {
-                Error::Unsupported(format!(
-                    "`{name}` is not built yet in this version of lodmark"
-                ))
+                let told = format!("`{name}` is not built yet in this version of lodmark");
+                Error::Unsupported(told)
             } else {
-                Error::Usage(format!(
-                    "there is no command `{name}`; see `lodmark --help`"
-                ))
+                let told = format!("there is no command `{name}`; see `lodmark --help`");
+                Error::Usage(told)
             })
         }
     };
@@ -192,6 +192,12 @@ fn run(arguments: Arguments, matches: &ArgMatches) -> Result<Verdict> {
     let verdict = verdict?;
     stdout::outcome()?;
     Ok(verdict)
+}
+
+/// True where the name of a file ends in `.extension`, in whichever case.
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
 /// The frame of every JSON report: schema, command, version, options, then what the command found.
@@ -215,15 +221,12 @@ fn report(
     let Some(path) = &common.json else {
         return Ok(());
     };
-    let version = env!("CARGO_PKG_VERSION");
-    crate::encode::json::write(
-        path,
-        &Report {
-            schema: 1,
-            command,
-            version,
-            options,
-            result,
-        },
-    )
+    let report = Report {
+        schema: 1,
+        command,
+        version: env!("CARGO_PKG_VERSION"),
+        options,
+        result,
+    };
+    json::write(path, &report)
 }

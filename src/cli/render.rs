@@ -3,15 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use serde_json::json;
 
 use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
-    Error, Progress, Result,
+    Error, Result,
     encode::{atomic, hash, npy, png},
-    raster::{self, Picture, Scene},
+    front::{
+        options::RenderOptions,
+        render::{draw, luma, write_scene},
+    },
+    raster::{self, Picture},
     view::{
-        self, Cull, Interpolation, Projection, Shading, Sphere, ViewSet, ViewsName,
-        file::ImageHashes, frame_of,
+        Cull, Interpolation, Projection, Shading, Sphere, ViewSet, ViewsName, file::ImageHashes,
     },
 };
 
@@ -67,17 +71,20 @@ enum Buffer {
 
 impl RenderArgs {
     fn set(&self, sphere: &Sphere) -> Result<ViewSet> {
-        let projection = if self.orthographic {
-            Projection::Orthographic
-        } else {
-            Projection::Perspective
+        let default = RenderOptions::default();
+        let wanted = RenderOptions {
+            views: self.views.clone(),
+            size: self.size.unwrap_or(default.size),
+            samples: self.samples.unwrap_or(default.samples),
+            projection: Projection::of(self.orthographic),
+            shading: Shading {
+                interpolation: self.shading.unwrap_or_default(),
+                ..default.shading
+            },
+            cull: self.cull.unwrap_or(default.cull),
+            subpixel: default.subpixel,
         };
-        let mut set = view::resolve(
-            &self.views,
-            sphere,
-            [self.size.unwrap_or(256); 2],
-            projection,
-        )?;
+        let mut set = wanted.view_set(sphere)?;
         if let ViewsName::File(path) = &self.views {
             let given = self.size.is_some()
                 || self.shading.is_some()
@@ -90,17 +97,11 @@ impl RenderArgs {
                     path.display()
                 )));
             }
-            return Ok(set);
         }
         if let Some(bits) = self.subpixel_bits {
             set.subpixel = bits.try_into().map_err(Error::Usage)?;
         }
-        set.with_shading(Shading {
-            interpolation: self.shading.unwrap_or_default(),
-            ..Shading::default()
-        })
-        .with_cull(self.cull.unwrap_or_default())
-        .with_samples(self.samples.unwrap_or(1))
+        Ok(set)
     }
 }
 
@@ -125,8 +126,7 @@ impl Buffer {
     ) -> Result<()> {
         match self {
             Self::Luma => {
-                let sums = raster::sum_samples(&picture.luma(), samples);
-                let luma = raster::mean_luma(&sums, samples);
+                let luma = luma(picture, samples);
                 hashes.insert("luma".into(), hash::plane_sha256(&luma));
                 png::write_grey(file, &luma)
             }
@@ -149,52 +149,34 @@ impl Buffer {
 pub(super) fn run(options: &RenderArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     let mesh = input::read(&options.input, true, terminal)?;
     input::require_triangles(&options.input, &mesh)?;
-    let frame = frame_of(&mesh);
     let sphere = Sphere::of_mesh(&mesh)
         .ok_or_else(|| Error::Internal("a mesh with triangles has a bounding sphere".into()))?;
     let set = options.set(&sphere)?;
-    let (framed, scene) = (set.enter_frame(frame), Scene::of(&mesh.enter_frame(frame)));
-    std::fs::create_dir_all(&options.folder)
-        .map_err(|e| Error::io("create", &options.folder, e))?;
+    let folder = &options.folder;
+    atomic::folder(folder)?;
     let mut hashes = Vec::new();
-    let mut dropped = 0;
-    for (i, view) in framed.views.iter().enumerate() {
-        terminal.step("render", i as u64, framed.views.len() as u64)?;
-        let picture = raster::rgb(&scene, view, &framed);
-        dropped += picture.dropped;
+    let dropped = draw(&mesh, &set, terminal, |i, picture| {
         let mut own = ImageHashes::default();
         for &buffer in &options.buffer {
-            let file = options.folder.join(buffer.file_name(i));
-            buffer.write(&file, &picture, framed.samples, &mut own)?;
+            let file = folder.join(buffer.file_name(i));
+            buffer.write(&file, picture, set.samples, &mut own)?;
         }
         hashes.push(own);
-    }
+        Ok(())
+    })?;
     if dropped > 0 {
         terminal.say(&format!(
             "{dropped} triangles were not drawn: a coordinate is not finite in a view"
         ));
     }
-    let scene = view::file::to_json(&set, &hashes)?;
-    atomic::write(&options.folder.join("scene.json"), |file| {
-        file.write_all(scene.as_bytes())
-    })?;
+    write_scene(folder, &set, &hashes)?;
     let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-    npy::write_rows(&options.folder.join("positions.npy"), &positions)?;
-    npy::write_rows(&options.folder.join("indices.npy"), mesh.triangles())?;
-    let resolved =
-        serde_json::json!({ "input": options.input, "views": options.views.to_string() });
-    report(
-        common,
-        "render",
-        resolved,
-        serde_json::json!({ "folder": options.folder, "dropped": dropped }),
-    )?;
-    answer!(
-        "{}: {} views of {} x {} pixels",
-        options.folder.display(),
-        set.views.len(),
-        set.width,
-        set.height
-    );
+    npy::write_rows(&folder.join("positions.npy"), &positions)?;
+    npy::write_rows(&folder.join("indices.npy"), mesh.triangles())?;
+    let resolved = json!({ "input": options.input, "views": options.views.to_string() });
+    let written = json!({ "folder": folder, "dropped": dropped });
+    report(common, "render", resolved, written)?;
+    let (folder, count, width, height) = (folder.display(), set.views.len(), set.width, set.height);
+    answer!("{folder}: {count} views of {width} x {height} pixels");
     Ok(Verdict::Good)
 }

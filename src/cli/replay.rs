@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde_json::{Value, json};
+
 use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
     Error, Result,
@@ -36,11 +38,7 @@ pub(super) struct ReplayArgs {
 
 pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     io::writable_format(&options.output)?;
-    input::require_outputs(
-        [Some(&options.output), common.json.as_ref()]
-            .into_iter()
-            .flatten(),
-    )?;
+    input::require_outputs([&options.output].into_iter().chain(&common.json))?;
     let bytes = bytes::read(&options.history)?;
     let history = History::from_bytes(&bytes, &options.history)?;
     // A recorded run welded its input or not; the hash of the content tells which.
@@ -51,11 +49,8 @@ pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) ->
             other => Some(other),
         }
     });
-    let mesh = mesh.unwrap_or_else(|| {
-        Err(Error::Internal(
-            "the second way of loading always answers".into(),
-        ))
-    })?;
+    let unanswered = || Error::Internal("the second way of loading always answers".into());
+    let mesh = mesh.ok_or_else(unanswered)??;
     let named = |error| match error {
         Error::Input { message, .. } => Error::input(&options.history, message),
         other => other,
@@ -74,33 +69,25 @@ pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) ->
         }
         terminal.say(&short);
     }
-    let level = if replay.applied() == 0 {
-        mesh.clone()
-    } else {
-        live.to_mesh()?
+    let level = match replay.applied() {
+        0 => mesh.clone(),
+        _ => live.to_mesh()?,
     };
     for note in io::write(&options.output, &level)? {
         terminal.say(&format!("{}: {note}", options.output.display()));
     }
-    let run: serde_json::Value =
-        serde_json::from_str(&history.header().options).unwrap_or_default();
+    let run: Value = serde_json::from_str(&history.header().options).unwrap_or_default();
+    let (applied, count) = (replay.applied(), level.triangles().len());
     report(
         common,
         "replay",
-        serde_json::json!({ "input": options.input, "triangles": triangles, "run": run }),
-        serde_json::json!({
-            "triangles_out": level.triangles().len(),
-            "vertices_out": level.positions().len(),
-            "records_applied": replay.applied(),
+        json!({ "input": options.input, "triangles": triangles, "run": run }),
+        json!({
+            "triangles_out": count, "vertices_out": level.positions().len(), "records_applied": applied,
             "content_sha256": content_sha256(&level),
         }),
     )?;
-    answer!(
-        "{}: {} triangles after {} of {} records",
-        options.output.display(),
-        level.triangles().len(),
-        replay.applied(),
-        history.len()
-    );
+    let (output, records) = (options.output.display(), history.len());
+    answer!("{output}: {count} triangles after {applied} of {records} records");
     Ok(Verdict::Good)
 }

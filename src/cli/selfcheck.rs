@@ -37,42 +37,32 @@ impl Machine {
             ("neon", cfg!(target_feature = "neon")),
             ("sve", cfg!(target_feature = "sve")),
         ];
+        let debug = cfg!(debug_assertions);
+        let on = sets.into_iter().filter(|(_, on)| *on);
         Self {
             architecture: std::env::consts::ARCH,
             system: std::env::consts::OS,
             threads: parallel::threads(),
-            build: if cfg!(debug_assertions) {
-                "debug"
-            } else {
-                "release"
-            },
-            features: sets
-                .into_iter()
-                .filter_map(|(name, on)| on.then_some(name))
-                .collect(),
+            build: if debug { "debug" } else { "release" },
+            features: on.map(|(name, _)| name).collect(),
         }
     }
 }
 
-pub(super) fn run(
-    options: &SelfcheckArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    let groups = Group::named(&options.groups)?;
+pub(super) fn run(args: &SelfcheckArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let groups = Group::named(&args.groups)?;
     let machine = Machine::here();
+    let sets = match machine.features[..] {
+        [] => "baseline".to_string(),
+        _ => machine.features.join(" "),
+    };
     answer!(
-        "lodmark {} on {}-{}, {} threads, {} build, instruction sets: {}",
+        "lodmark {} on {}-{}, {} threads, {} build, instruction sets: {sets}",
         env!("CARGO_PKG_VERSION"),
         machine.architecture,
         machine.system,
         machine.threads,
-        machine.build,
-        if machine.features.is_empty() {
-            "baseline".to_string()
-        } else {
-            machine.features.join(" ")
-        }
+        machine.build
     );
     let record = Record::embedded()?.of_groups(&groups);
     let mut mismatches = Vec::new();
@@ -80,39 +70,25 @@ pub(super) fn run(
         terminal.step("goldens", i as u64, groups.len() as u64)?;
         let items = group.items()?;
         let found = record.group(group.name).compare(&items);
-        let verdict = if found.is_empty() {
-            "ok".to_string()
-        } else {
-            format!("{} DIFFER", found.len())
+        let verdict = match found.len() {
+            0 => "ok".to_string(),
+            count => format!("{count} DIFFER"),
         };
-        answer!(
-            "  {:9} {:4} {verdict:12} {}",
-            group.name,
-            items.len(),
-            group.about
-        );
+        let (name, about) = (group.name, group.about);
+        answer!("  {name:9} {:4} {verdict:12} {about}", items.len());
         mismatches.extend(found);
     }
     for mismatch in &mismatches {
         answer!("{mismatch}");
     }
-    answer!(
-        "{}",
-        if mismatches.is_empty() {
-            "every bit is as it should be"
-        } else {
+    let verdict = Verdict::of(mismatches.is_empty());
+    match verdict {
+        Verdict::Good => answer!("every bit is as it should be"),
+        Verdict::Negative => answer!(
             "this program does not compute what it should on this machine; please report it"
-        }
-    );
-    report(
-        common,
-        "selfcheck",
-        &machine,
-        serde_json::json!({ "goldens": record.len(), "mismatches": mismatches }),
-    )?;
-    Ok(if mismatches.is_empty() {
-        Verdict::Good
-    } else {
-        Verdict::Negative
-    })
+        ),
+    }
+    let found = serde_json::json!({ "goldens": record.len(), "mismatches": mismatches });
+    report(common, "selfcheck", &machine, found)?;
+    Ok(verdict)
 }

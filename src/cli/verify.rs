@@ -1,8 +1,9 @@
 //! `lodmark verify`: holds a simplified mesh to what is claimed about it; exit code 1 where the claim is broken.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ArgGroup;
+use serde_json::json;
 
 use super::{Common, Verdict, file_help, input, report, terminal::Terminal};
 use crate::{
@@ -46,12 +47,8 @@ pub(super) struct VerifyArgs {
     #[arg(long, conflicts_with = "error_deg")]
     one_sided: bool,
     /// Claimed: no viewer in --cell sees a point of REF and what stands for it under more than this angle, in degrees
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        allow_negative_numbers = true,
-        requires = "cell"
-    )]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(requires = "cell")]
     error_deg: Option<f64>,
     /// The viewpoints of --error-deg: a JSON cell file
     #[arg(long, value_name = "FILE", requires = "error_deg", conflicts_with_all = ["error", "error_abs"])]
@@ -70,117 +67,64 @@ pub(super) fn run(options: &VerifyArgs, common: &Common, terminal: &Terminal) ->
     input::require_triangles(&options.reference, &reference)?;
     let low = input::read(&options.low, false, terminal)?;
     input::require_triangles(&options.low, &low)?;
-    let holds = match (options.error, options.error_abs, options.error_deg) {
-        (Some(share), ..) => distances(
-            options,
-            &reference,
-            &low,
-            Claim::Relative(share),
-            common,
-            terminal,
-        )?,
-        (None, Some(length), _) => distances(
-            options,
-            &reference,
-            &low,
-            Claim::Absolute(length),
-            common,
-            terminal,
-        )?,
-        (None, None, degrees) => {
-            let degrees = degrees.unwrap_or(0.0);
-            angles(options, &reference, &low, degrees, common, terminal)?
+    let meshes = [&reference, &low];
+    let holds = match (options.error, options.error_abs) {
+        (Some(share), _) => distances(options, meshes, Claim::Relative(share), common, terminal)?,
+        (None, Some(length)) => {
+            distances(options, meshes, Claim::Absolute(length), common, terminal)?
         }
+        (None, None) => angles(options, meshes, common, terminal)?,
     };
-    Ok(if holds {
-        Verdict::Good
-    } else {
-        Verdict::Negative
-    })
+    Ok(Verdict::of(holds))
 }
 
 fn distances(
     options: &VerifyArgs,
-    reference: &Mesh,
-    low: &Mesh,
+    [reference, low]: [&Mesh; 2],
     claim: Claim,
     common: &Common,
     terminal: &Terminal,
 ) -> Result<bool> {
-    let found = verify::distance(
-        reference,
-        low,
-        claim,
-        options.one_sided,
-        options.samples,
-        terminal,
-    )?;
-    report(
-        common,
-        "verify",
-        serde_json::json!({
-            "reference": options.reference, "low": options.low, "claim": claim,
-            "one_sided": options.one_sided, "samples": options.samples,
-        }),
-        &found,
-    )?;
+    let (one_sided, samples) = (options.one_sided, options.samples);
+    let found = verify::distance(reference, low, claim, one_sided, samples, terminal)?;
+    let resolved = json!({
+        "reference": options.reference, "low": options.low, "claim": claim, "one_sided": one_sided, "samples": samples,
+    });
+    report(common, "verify", resolved, &found)?;
     tell(&found);
     Ok(found.holds)
 }
 
 fn angles(
     options: &VerifyArgs,
-    reference: &Mesh,
-    low: &Mesh,
-    degrees: f64,
+    [reference, low]: [&Mesh; 2],
     common: &Common,
     terminal: &Terminal,
 ) -> Result<bool> {
+    let (degrees, samples) = (options.error_deg.unwrap_or(0.0), options.samples);
     let Some(path) = &options.cell else {
-        return Err(Error::Usage(
-            "--error-deg needs --cell FILE: the viewpoints that the bound holds for".into(),
-        ));
+        let told = "--error-deg needs --cell FILE: the viewpoints that the bound holds for";
+        return Err(Error::Usage(told.into()));
     };
     let cell = view_cell::file::read(path)?;
-    let record = match &options.bound {
-        Some(path) => Some(Record::from_bytes(&bytes::read(path)?, path)?),
-        None => None,
-    };
-    let original = match (&record, &options.bound) {
-        (Some(record), Some(path)) => {
-            if !record.is_to(low) {
-                return Err(Error::input(
-                    path,
-                    format!("does not belong to {}", options.low.display()),
-                ));
-            }
-            recorded(record, reference).ok_or_else(|| {
-                Error::input(
-                    path,
-                    format!("does not belong to {}", options.reference.display()),
-                )
-            })?
+    let (mut record, mut original) = (None, reference.clone());
+    if let Some(path) = &options.bound {
+        let foreign =
+            |to: &Path| Error::input(path, format!("does not belong to {}", to.display()));
+        let found = Record::from_bytes(&bytes::read(path)?, path)?;
+        if !found.is_to(low) {
+            return Err(foreign(&options.low));
         }
-        _ => reference.clone(),
-    };
-    let found = verify::angles(
-        &original,
-        low,
-        &cell,
-        degrees,
-        record.as_ref(),
-        options.samples,
-        terminal,
-    )?;
-    report(
-        common,
-        "verify",
-        serde_json::json!({
-            "reference": options.reference, "low": options.low, "error_deg": degrees, "cell": cell,
-            "bound": options.bound, "samples": options.samples,
-        }),
-        &found,
-    )?;
+        original = recorded(&found, reference).ok_or_else(|| foreign(&options.reference))?;
+        record = Some(found);
+    }
+    let map = record.as_ref();
+    let found = verify::angles(&original, low, &cell, degrees, map, samples, terminal)?;
+    let resolved = json!({
+        "reference": options.reference, "low": options.low, "error_deg": degrees, "cell": cell, "bound": options.bound,
+        "samples": samples,
+    });
+    report(common, "verify", resolved, &found)?;
     tell_angles(&found, &original, reference);
     Ok(found.holds)
 }
@@ -204,14 +148,15 @@ fn in_file(original: &Mesh, triangle: u32, reference: &Mesh) -> Option<usize> {
 }
 
 fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
-    answer!(
-        "claimed: at most {} degrees between {}",
-        found.claimed_deg,
-        match found.property {
-            Property::Correspondence => "every original point and what stands for it",
-            Property::NearestInAngle =>
-                "every original point and the simplified point nearest in angle (weaker: no --bound)",
+    let pairs = match found.property {
+        Property::Correspondence => "every original point and what stands for it",
+        Property::NearestInAngle => {
+            "every original point and the simplified point nearest in angle (weaker: no --bound)"
         }
+    };
+    answer!(
+        "claimed: at most {} degrees between {pairs}",
+        found.claimed_deg
     );
     if found.part_of_cell {
         answer!(
@@ -244,10 +189,8 @@ fn tell_angles(found: &AngleReport, original: &Mesh, reference: &Mesh) {
         answer!("no viewer sees any of them under more than {degrees:.9} degrees: proven");
     }
     if found.property == Property::Correspondence {
-        answer!(
-            "proven for all viewpoints of the cell but for {:.3e} of the original's area",
-            found.undecided_area
-        );
+        let area = found.undecided_area;
+        answer!("proven for all viewpoints of the cell but for {area:.3e} of the original's area");
     }
     answer!(
         "{}",
@@ -272,58 +215,34 @@ fn tell(found: &DistanceReport) {
             String::new()
         }
     };
-    answer!(
-        "claimed: at most {:.6e}{}",
-        found.claimed,
-        percent(found.claimed)
-    );
+    let length = |x: f64| format!("{x:.6e}{}", percent(x));
+    answer!("claimed: at most {}", length(found.claimed));
     for d in &found.directions {
-        let (f, to) = (
-            &d.farthest,
-            if d.from == "reference" {
-                "simplified"
-            } else {
-                "reference"
-            },
-        );
+        let to = match d.from {
+            "reference" => "simplified",
+            _ => "reference",
+        };
+        let (from, samples, triangle) = (d.from, d.samples, d.farthest.triangle);
+        let ([x, y, z], largest) = (d.farthest.point, length(d.farthest.distance));
         answer!(
-            "{} -> {to}: {} points, largest {:.6e}{} on triangle {} at ({}, {}, {})",
-            d.from,
-            d.samples,
-            f.distance,
-            percent(f.distance),
-            f.triangle,
-            f.point[0],
-            f.point[1],
-            f.point[2]
+            "{from} -> {to}: {samples} points, largest {largest} on triangle {triangle} at ({x}, {y}, {z})"
         );
-        if !d.is_proven {
-            answer!(
-                "  proven: at most {:.6e}{}; the claim itself is undecided on {:.2e} of the area",
-                d.upper_bound,
-                percent(d.upper_bound),
-                d.undecided_area
-            );
+        let (most, area) = (length(d.upper_bound), d.undecided_area);
+        if d.is_proven {
+            answer!("  proven: at most {most}");
         } else {
             answer!(
-                "  proven: at most {:.6e}{}",
-                d.upper_bound,
-                percent(d.upper_bound)
+                "  proven: at most {most}; the claim itself is undecided on {area:.2e} of the area"
             );
         }
         if !d.holds {
-            answer!(
-                "  BROKEN: {} of the points are farther away than claimed",
-                d.violations.max(1)
-            );
+            let count = d.violations.max(1);
+            answer!("  BROKEN: {count} of the points are farther away than claimed");
         }
     }
-    answer!(
-        "{}",
-        match (found.holds, found.proven) {
-            (false, _) => "the claim is broken",
-            (true, true) => "the claim holds: proven",
-            (true, false) => "no point breaks the claim",
-        }
-    );
+    match (found.holds, found.proven) {
+        (false, _) => answer!("the claim is broken"),
+        (true, true) => answer!("the claim holds: proven"),
+        (true, false) => answer!("no point breaks the claim"),
+    }
 }

@@ -21,6 +21,22 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     })
 }
 
+/// [`write()`] for bytes that are there.
+///
+/// # Errors
+/// [`Error::Io`] where the folder or file cannot be written.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write(path, |file| file.write_all(bytes))
+}
+
+/// Makes a folder and those above it where they are missing.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|e| Error::io("create", path, e))
+}
+
 /// What gives a file its content, called once.
 type Content<'a> = &'a mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
 
@@ -68,15 +84,12 @@ fn replaceable(target: &Path) -> io::Result<Option<fs::Metadata>> {
         return Ok(None);
     };
     if found.is_dir() {
-        return Err(io::Error::other(
-            "it is a folder; expected the name of a file in it",
-        ));
+        let told = "it is a folder; expected the name of a file in it";
+        return Err(io::Error::other(told));
     }
     if found.is_file() && found.permissions().readonly() {
-        return Err(io::Error::new(
-            io::ErrorKind::PermissionDenied,
-            "the existing file is read-only; make it writable or choose another name",
-        ));
+        let told = "the existing file is read-only; make it writable or choose another name";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, told));
     }
     Ok(Some(found))
 }

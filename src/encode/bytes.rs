@@ -25,12 +25,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
         .read_to_end(&mut bytes)
         .map_err(failed)?;
     if bytes.len() as u64 > STREAM_LIMIT {
-        return Err(Error::input(
-            path,
-            format!(
-                "gives more than {STREAM_LIMIT} bytes and is no regular file; write it to a file first"
-            ),
-        ));
+        let told = format!(
+            "gives more than {STREAM_LIMIT} bytes and is no regular file; write it to a file first"
+        );
+        return Err(Error::input(path, told));
     }
     Ok(bytes)
 }

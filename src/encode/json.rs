@@ -26,8 +26,7 @@ pub fn to_text(report: &impl Serialize) -> Result<String> {
 /// # Errors
 /// As [`to_text`] and [`atomic::write`].
 pub fn write(path: &Path, report: &impl Serialize) -> Result<()> {
-    let text = to_text(report)?;
-    atomic::write(path, |file| file.write_all(text.as_bytes()))
+    atomic::write_bytes(path, to_text(report)?.as_bytes())
 }
 
 /// Reads a whole text file of at most `limit` bytes; `kind` is named in errors.
@@ -45,10 +44,8 @@ pub fn read_text(path: &Path, limit: u64, kind: &str) -> Result<String> {
         return Err(Error::input(path, told));
     }
     String::from_utf8(bytes).map_err(|e| {
-        Error::input(
-            path,
-            format!("{}; expected a {kind} (JSON)", e.utf8_error()),
-        )
+        let told = format!("{}; expected a {kind} (JSON)", e.utf8_error());
+        Error::input(path, told)
     })
 }
 

@@ -26,9 +26,8 @@ macro_rules! element {
             const TYPE: &'static str = $name;
 
             fn from_bytes(bytes: &[u8]) -> Self {
-                bytes
-                    .first_chunk()
-                    .map_or_else(Self::default, |b| Self::from_le_bytes(*b))
+                let number = bytes.first_chunk().copied();
+                number.map_or_else(Self::default, Self::from_le_bytes)
             }
         }
     )*};
@@ -122,10 +121,10 @@ pub fn read_plane<T: Element>(path: &Path) -> Result<Grid<T>> {
     match (u32::try_from(columns), u32::try_from(rows)) {
         (Ok(width), Ok(height)) => Grid::new(width, height, values)
             .ok_or_else(|| Error::Internal("an array changed its size".into())),
-        _ => Err(Error::input(
-            path,
-            format!("holds {rows} x {columns} values; expected sides below 2^32"),
-        )),
+        _ => {
+            let told = format!("holds {rows} x {columns} values; expected sides below 2^32");
+            Err(Error::input(path, told))
+        }
     }
 }
 
@@ -136,10 +135,8 @@ pub fn read_plane<T: Element>(path: &Path) -> Result<Grid<T>> {
 pub fn read_rows<T: Element>(path: &Path) -> Result<Vec<[T; 3]>> {
     let (values, [_, columns]) = read_table(path)?;
     if columns != 3 {
-        return Err(Error::input(
-            path,
-            format!("holds rows of {columns} values; expected 3"),
-        ));
+        let told = format!("holds rows of {columns} values; expected 3");
+        return Err(Error::input(path, told));
     }
     let (rows, _) = values.as_chunks::<3>();
     Ok(rows.to_vec())
@@ -148,13 +145,14 @@ pub fn read_rows<T: Element>(path: &Path) -> Result<Vec<[T; 3]>> {
 /// Reads the values, rows and columns of a two-dimensional array.
 fn read_table<T: Element>(path: &Path) -> Result<(Vec<T>, [u64; 2])> {
     let (values, shape) = read_array(path)?;
-    let sides = <[u64; 2]>::try_from(shape).map_err(|shape| {
-        Error::input(
-            path,
-            format!("holds an array of {} dimensions; expected 2", shape.len()),
-        )
-    })?;
-    Ok((values, sides))
+    match shape[..] {
+        [rows, columns] => Ok((values, [rows, columns])),
+        _ => {
+            let count = shape.len();
+            let told = format!("holds an array of {count} dimensions; expected 2");
+            Err(Error::input(path, told))
+        }
+    }
 }
 
 /// Reads the values and the shape of an array of exactly this type, of one to four dimensions, in C order.
@@ -163,45 +161,34 @@ fn read_table<T: Element>(path: &Path) -> Result<(Vec<T>, [u64; 2])> {
 /// [`Error::Io`]; [`Error::Input`] where the file is damaged or holds another array.
 pub fn read_array<T: Element>(path: &Path) -> Result<(Vec<T>, Vec<u64>)> {
     let bytes = bytes::read(path)?;
-    let header = Header::of(&bytes).ok_or_else(|| {
-        Error::input(
-            path,
-            "does not begin like a .npy file of version 1 to 3; expected a NumPy array",
-        )
-    })?;
+    let bad = |message: String| Error::input(path, message);
+    let Some(header) = Header::of(&bytes) else {
+        let told = "does not begin like a .npy file of version 1 to 3; expected a NumPy array";
+        return Err(bad(told.into()));
+    };
     if header.descr != T::TYPE || header.fortran_order {
-        return Err(Error::input(
-            path,
-            format!(
-                "holds numbers of type {} in {} order; expected {} in C order",
-                header.descr,
-                if header.fortran_order { "Fortran" } else { "C" },
-                T::TYPE
-            ),
-        ));
+        let order = if header.fortran_order { "Fortran" } else { "C" };
+        let (found, expected) = (header.descr, T::TYPE);
+        return Err(bad(format!(
+            "holds numbers of type {found} in {order} order; expected {expected} in C order"
+        )));
     }
     let shape = header.shape;
-    if !(1..=MOST_DIMENSIONS).contains(&shape.len()) {
-        return Err(Error::input(
-            path,
-            format!(
-                "holds an array of {} dimensions; expected 1 to {MOST_DIMENSIONS}",
-                shape.len()
-            ),
-        ));
+    let dimensions = shape.len();
+    if !(1..=MOST_DIMENSIONS).contains(&dimensions) {
+        return Err(bad(format!(
+            "holds an array of {dimensions} dimensions; expected 1 to {MOST_DIMENSIONS}"
+        )));
     }
     let size = count(&shape).and_then(|n| n.checked_mul(u64::from(T::BYTES)));
     if size != Some(header.body.len() as u64) {
         let sides: Vec<String> = shape.iter().map(u64::to_string).collect();
         let expected = size.map_or("more than any file has".into(), |size| size.to_string());
-        return Err(Error::input(
-            path,
-            format!(
-                "claims {} values but has {} bytes of them; expected {expected}",
-                sides.join(" x "),
-                header.body.len(),
-            ),
-        ));
+        return Err(bad(format!(
+            "claims {} values but has {} bytes of them; expected {expected}",
+            sides.join(" x "),
+            header.body.len(),
+        )));
     }
     let values = header.body.chunks_exact(T::BYTES as usize);
     Ok((values.map(T::from_bytes).collect(), shape))
@@ -231,22 +218,16 @@ impl<'a> Header<'a> {
         let after = |key: &str| Some(text.split_once(key)?.1.trim_start());
         let (descr, _) = after("'descr':")?.strip_prefix('\'')?.split_once('\'')?;
         let (shape, _) = after("'shape':")?.strip_prefix('(')?.split_once(')')?;
-        let fortran_order = after("'fortran_order':")?;
+        let order = after("'fortran_order':")?;
+        let fortran_order = order.starts_with("True");
+        if !fortran_order && !order.starts_with("False") {
+            return None;
+        }
+        let sides = shape.split(',').map(str::trim).filter(|s| !s.is_empty());
         Some(Self {
             descr,
-            fortran_order: if fortran_order.starts_with("True") {
-                true
-            } else if fortran_order.starts_with("False") {
-                false
-            } else {
-                return None;
-            },
-            shape: shape
-                .split(',')
-                .map(str::trim)
-                .filter(|side| !side.is_empty())
-                .map(|side| side.parse().ok())
-                .collect::<Option<_>>()?,
+            fortran_order,
+            shape: sides.map(|side| side.parse().ok()).collect::<Option<_>>()?,
             body: cursor.rest(),
         })
     }

@@ -64,8 +64,7 @@ impl Picture {
 /// # Errors
 /// [`Error::Usage`] for a picture without pixels or beyond [`SIDE_LIMIT`]; as [`atomic::write`].
 pub fn write_grey(path: &Path, picture: &Grid<u8>) -> Result<()> {
-    let size = checked_size(picture)?;
-    write(path, picture.values(), size, ExtendedColorType::L8)
+    write(path, picture, picture.values(), ExtendedColorType::L8)
 }
 
 /// Writes an 8-bit RGB picture; an existing file is replaced as a whole.
@@ -73,9 +72,8 @@ pub fn write_grey(path: &Path, picture: &Grid<u8>) -> Result<()> {
 /// # Errors
 /// As [`write_grey`].
 pub fn write_rgb(path: &Path, picture: &Grid<[u8; 3]>) -> Result<()> {
-    let size = checked_size(picture)?;
     let bytes = picture.values().as_flattened();
-    write(path, bytes, size, ExtendedColorType::Rgb8)
+    write(path, picture, bytes, ExtendedColorType::Rgb8)
 }
 
 /// Writes an 8-bit RGB picture with opacity; an existing file is replaced as a whole. [`read`] refuses such files.
@@ -83,26 +81,28 @@ pub fn write_rgb(path: &Path, picture: &Grid<[u8; 3]>) -> Result<()> {
 /// # Errors
 /// As [`write_grey`].
 pub fn write_rgba(path: &Path, picture: &Grid<[u8; 4]>) -> Result<()> {
-    let size = checked_size(picture)?;
     let bytes = picture.values().as_flattened();
-    write(path, bytes, size, ExtendedColorType::Rgba8)
+    write(path, picture, bytes, ExtendedColorType::Rgba8)
 }
 
-fn checked_size<T: Copy>(picture: &Grid<T>) -> Result<(u32, u32)> {
-    let size = (picture.width(), picture.height());
-    if size.0 == 0 || size.1 == 0 || size.0 > SIDE_LIMIT || size.1 > SIDE_LIMIT {
+fn write<T: Copy>(
+    path: &Path,
+    picture: &Grid<T>,
+    bytes: &[u8],
+    color: ExtendedColorType,
+) -> Result<()> {
+    let (width, height) = (picture.width(), picture.height());
+    if [width, height]
+        .iter()
+        .any(|side| !(1..=SIDE_LIMIT).contains(side))
+    {
         return Err(Error::Usage(format!(
-            "a picture of {} x {} pixels; expected 1 to {SIDE_LIMIT} per side",
-            size.0, size.1
+            "a picture of {width} x {height} pixels; expected 1 to {SIDE_LIMIT} per side"
         )));
     }
-    Ok(size)
-}
-
-fn write(path: &Path, bytes: &[u8], size: (u32, u32), color: ExtendedColorType) -> Result<()> {
     atomic::write(path, |file: &mut dyn Write| {
         PngEncoder::new_with_quality(file, CompressionType::Default, FilterType::Adaptive)
-            .write_image(bytes, size.0, size.1, color)
+            .write_image(bytes, width, height, color)
             .map_err(std::io::Error::other)
     })
 }
@@ -122,45 +122,39 @@ pub fn read(path: &Path) -> Result<Picture> {
         .read_to_end(&mut bytes)
         .map_err(io)?;
     if bytes != SIGNATURE {
-        return Err(Error::input(
-            path,
-            "does not begin like a PNG file; expected a PNG picture",
-        ));
+        let told = "does not begin like a PNG file; expected a PNG picture";
+        return Err(Error::input(path, told));
     }
     file.take(FILE_LIMIT).read_to_end(&mut bytes).map_err(io)?;
     decode(path, &bytes)
 }
 
 fn decode(path: &Path, bytes: &[u8]) -> Result<Picture> {
+    let bad = |message: String| Error::input(path, message);
     let damaged = |e: image::ImageError| {
-        Error::input(
-            path,
-            format!("is no readable PNG picture ({e}); write it again with another program"),
-        )
+        bad(format!(
+            "is no readable PNG picture ({e}); write it again with another program"
+        ))
     };
     let file_bytes = bytes.len() as u64;
+    let most_bytes = file_bytes * DEFLATE_RATIO * EXPANSION;
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(SIDE_LIMIT);
     limits.max_image_height = Some(SIDE_LIMIT);
     // The decoder's own buffers: a picture, and what its compressed chunks may hold.
-    limits.max_alloc =
-        Some((file_bytes * DEFLATE_RATIO * EXPANSION + (1 << 20)).min(2 * FILE_LIMIT));
-    let mut decoder =
-        PngDecoder::with_limits(Cursor::new(bytes), limits.clone()).map_err(damaged)?;
+    limits.max_alloc = Some((most_bytes + (1 << 20)).min(2 * FILE_LIMIT));
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits.clone());
+    let mut decoder = decoder.map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     if width > SIDE_LIMIT || height > SIDE_LIMIT {
-        return Err(Error::input(
-            path,
-            format!("claims {width} x {height} pixels; expected at most {SIDE_LIMIT} per side"),
-        ));
+        return Err(bad(format!(
+            "claims {width} x {height} pixels; expected at most {SIDE_LIMIT} per side"
+        )));
     }
-    if decoder.total_bytes() > file_bytes * DEFLATE_RATIO * EXPANSION {
-        return Err(Error::input(
-            path,
-            format!(
-                "claims {width} x {height} pixels, more than its {file_bytes} bytes can hold; it is damaged or cut off"
-            ),
-        ));
+    if decoder.total_bytes() > most_bytes {
+        return Err(bad(format!(
+            "claims {width} x {height} pixels, more than its {file_bytes} bytes can hold; it is damaged or cut off"
+        )));
     }
     decoder.set_limits(limits).map_err(damaged)?;
     let color = decoder.color_type();

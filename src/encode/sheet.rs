@@ -2,8 +2,13 @@
 //!
 //! Labels are drawn with a built-in font and cut at the edge of their cell. Lengths are pixels.
 
+use std::borrow::Borrow;
+
 use super::{font, png::SIDE_LIMIT};
 use crate::{Error, Result, num::Grid};
+
+/// Space around the pictures of a sheet for eyes.
+pub const PADDING: u32 = 8;
 
 /// A pixel that a grey level can be drawn into.
 pub trait Ink: Copy {
@@ -23,74 +28,40 @@ impl Ink for [u8; 3] {
     }
 }
 
-/// A picture and what is written below it.
-#[derive(Clone, Copy, Debug)]
-pub struct Tile<'a, P> {
-    /// The picture.
-    pub picture: &'a Grid<P>,
-    /// One line of printable ASCII; empty for none. Other characters are drawn as boxes.
-    pub label: &'a str,
-}
-
-/// Spaces and grey levels of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Style {
-    /// Space around every picture.
-    pub padding: u32,
-    /// Side of a dot of the font, at least 1.
-    pub dot: u32,
-    /// Grey level of the paper.
-    pub paper: u8,
-    /// Grey level of the labels.
-    pub ink: u8,
-}
-
-impl Default for Style {
-    /// Black on white, 8 pixels of space, dots of one pixel.
-    fn default() -> Self {
-        Self {
-            padding: 8,
-            dot: 1,
-            paper: 255,
-            ink: 0,
-        }
-    }
-}
-
-/// A sheet of tiles, row by row, `columns` in a row (fewer where there are fewer tiles). Cells have the size of the
-/// largest picture; pictures stand at the top left of their cells.
+/// Puts pictures on a sheet, row by row, `columns` in a row (fewer where there are fewer pictures), black on white, with
+/// `padding` around every picture. Cells have the size of the largest picture; pictures stand at the top left of their
+/// cells, each above its label: one line of printable ASCII, empty for none; other characters are drawn as boxes.
 ///
 /// # Errors
-/// [`Error::Usage`] without tiles, for 0 columns or dots of size 0, and where a side would exceed 16,384 pixels.
-pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Result<Grid<P>> {
-    if tiles.is_empty() || columns == 0 || !(1..=SIDE_LIMIT).contains(&style.dot) {
+/// [`Error::Usage`] without pictures, for 0 columns, and where a side would exceed 16,384 pixels.
+pub fn sheet<P: Ink>(
+    tiles: &[(impl Borrow<Grid<P>>, impl AsRef<str>)],
+    columns: u32,
+    padding: u32,
+) -> Result<Grid<P>> {
+    if tiles.is_empty() || columns == 0 {
         return Err(Error::Usage(format!(
-            "a sheet of {} pictures in {columns} columns with dots of {} pixels; expected at least 1 of each",
+            "a sheet of {} pictures in {columns} columns; expected at least 1 of each",
             tiles.len(),
-            style.dot
         )));
     }
     let widest = |size: fn(&Grid<P>) -> u32| {
-        tiles
-            .iter()
-            .map(|t| u64::from(size(t.picture)))
-            .max()
-            .unwrap_or(0)
+        let sizes = tiles.iter().map(|(picture, _)| size(picture.borrow()));
+        sizes.max().map_or(0, u64::from)
     };
-    let (padding, dot) = (u64::from(style.padding), u64::from(style.dot));
     let (width, height) = (widest(Grid::width), widest(Grid::height));
-    let label = if tiles.iter().all(|t| t.label.is_empty()) {
-        0
+    let labelled = tiles.iter().any(|(_, label)| !label.as_ref().is_empty());
+    let label = if labelled {
+        u64::from(font::HEIGHT) + 2
     } else {
-        (u64::from(font::HEIGHT) + 2) * dot
+        0
     };
     let columns = u64::from(columns).min(tiles.len() as u64);
     let rows = (tiles.len() as u64).div_ceil(columns);
+    let padding = u64::from(padding);
     let (cell_width, cell_height) = (width + padding, height + label + padding);
-    let (sheet_width, sheet_height) = (
-        columns.saturating_mul(cell_width).saturating_add(padding),
-        rows.saturating_mul(cell_height).saturating_add(padding),
-    );
+    let sheet_width = columns.saturating_mul(cell_width).saturating_add(padding);
+    let sheet_height = rows.saturating_mul(cell_height).saturating_add(padding);
     let limit = u64::from(SIDE_LIMIT);
     if sheet_width > limit || sheet_height > limit {
         return Err(Error::Usage(format!(
@@ -98,19 +69,14 @@ pub fn sheet<P: Ink>(tiles: &[Tile<'_, P>], columns: u32, style: Style) -> Resul
              pictures"
         )));
     }
-    let mut page = Page {
-        plane: Grid::filled(
-            sheet_width as u32,
-            sheet_height as u32,
-            P::grey(style.paper),
-        ),
-    };
-    for (i, tile) in (0_u64..).zip(tiles) {
+    let plane = Grid::filled(sheet_width as u32, sheet_height as u32, P::grey(255));
+    let mut page = Page { plane };
+    for (i, (picture, label)) in (0_u64..).zip(tiles) {
         let x = (padding + i % columns * cell_width) as u32;
         let y = (padding + i / columns * cell_height) as u32;
-        page.picture(x, y, tile.picture);
-        let (baseline, end) = (y + height as u32 + 2 * style.dot, x + width as u32);
-        page.text(x, baseline, end, tile.label, style);
+        page.picture(x, y, picture.borrow());
+        let (baseline, end) = (y + height as u32 + 2, x + width as u32);
+        page.text(x, baseline, end, label.as_ref());
     }
     Ok(page.plane)
 }
@@ -137,20 +103,20 @@ impl<P: Ink> Page<P> {
     }
 
     /// One line with its top left corner at (x, y); characters that do not fit before column `end` are left out.
-    fn text(&mut self, x: u32, y: u32, end: u32, text: &str, style: Style) {
+    fn text(&mut self, x: u32, y: u32, end: u32, text: &str) {
         let mut left = x;
         for character in text.chars() {
-            if left + font::WIDTH * style.dot > end {
+            if left + font::WIDTH > end {
                 return;
             }
-            for row in 0..font::HEIGHT * style.dot {
-                for column in 0..font::WIDTH * style.dot {
-                    if font::ink(character, column / style.dot, row / style.dot) {
-                        self.set(left + column, y + row, P::grey(style.ink));
-                    }
+            for (row, column) in
+                (0..font::HEIGHT).flat_map(|r| (0..font::WIDTH).map(move |c| (r, c)))
+            {
+                if font::ink(character, column, row) {
+                    self.set(left + column, y + row, P::grey(0));
                 }
             }
-            left += (font::WIDTH + 1) * style.dot;
+            left += font::WIDTH + 1;
         }
     }
 }

@@ -5,7 +5,7 @@
 
 mod compare;
 mod history;
-mod render;
+pub(crate) mod render;
 pub mod verify;
 mod visibility;
 

@@ -7,7 +7,7 @@ use crate::{
     encode::{atomic, hash, npy, png},
     mesh::Mesh,
     num::fixed::SubpixelBits,
-    raster::{self, Grid, Scene},
+    raster::{self, Grid, Picture, Scene},
     view::{
         self, Cull, Projection, Shading, Sphere, ViewSet, ViewsName, file::ImageHashes, frame_of,
     },
@@ -140,29 +140,61 @@ pub fn render_with(
     let sphere = Sphere::of_mesh(mesh)
         .ok_or_else(|| Error::Usage("a mesh without triangles shows nothing".into()))?;
     let views = options.view_set(&sphere)?;
-    let frame = frame_of(mesh);
-    let (framed, scene) = (
-        views.enter_frame(frame),
-        Scene::of(&mesh.enter_frame(frame)),
-    );
-    let (mut images, mut dropped) = (Vec::with_capacity(views.views.len()), 0);
-    for (i, view) in framed.views.iter().enumerate() {
-        progress.step("render", i as u64, framed.views.len() as u64)?;
-        let picture = raster::rgb(&scene, view, &framed);
-        let sums = raster::sum_samples(&picture.luma(), framed.samples);
-        dropped += picture.dropped;
+    let mut images = Vec::with_capacity(views.views.len());
+    let dropped = draw(mesh, &views, progress, |_, picture| {
         images.push(ViewImages {
-            luma: raster::mean_luma(&sums, framed.samples),
-            rgb: raster::mean_rgb(&picture.tones, framed.samples),
-            ids: raster::ids(&picture),
-            depths: raster::depths(&picture),
+            luma: luma(picture, views.samples),
+            rgb: raster::mean_rgb(&picture.tones, views.samples),
+            ids: raster::ids(picture),
+            depths: raster::depths(picture),
         });
-    }
+        Ok(())
+    })?;
     Ok(Rendering {
         views,
         images,
         dropped,
     })
+}
+
+/// Draws a mesh in every view, in the units of the mesh, and hands `take` the number of the view and its picture; the
+/// answer is the number of triangles that some view could not draw.
+///
+/// # Errors
+/// [`Error::Interrupted`]; that of `take`.
+pub(crate) fn draw(
+    mesh: &Mesh,
+    views: &ViewSet,
+    progress: &dyn Progress,
+    mut take: impl FnMut(usize, &Picture<[u8; 3]>) -> Result<()>,
+) -> Result<u64> {
+    let frame = frame_of(mesh);
+    let (framed, scene) = (
+        views.enter_frame(frame),
+        Scene::of(&mesh.enter_frame(frame)),
+    );
+    let mut dropped = 0;
+    for (i, view) in framed.views.iter().enumerate() {
+        progress.step("render", i as u64, framed.views.len() as u64)?;
+        let picture = raster::rgb(&scene, view, &framed);
+        dropped += picture.dropped;
+        take(i, &picture)?;
+    }
+    Ok(dropped)
+}
+
+/// Luma of every pixel: the mean of its samples.
+pub(crate) fn luma(picture: &Picture<[u8; 3]>, samples: u32) -> Grid<u8> {
+    raster::mean_luma(&raster::sum_samples(&picture.luma(), samples), samples)
+}
+
+/// Writes `scene.json`, the view file with the hashes of its images, into a folder.
+///
+/// # Errors
+/// [`Error::Io`].
+pub(crate) fn write_scene(folder: &Path, views: &ViewSet, hashes: &[ImageHashes]) -> Result<()> {
+    let scene = view::file::to_json(views, hashes)?;
+    atomic::write_bytes(&folder.join("scene.json"), scene.as_bytes())
 }
 
 impl Rendering {
@@ -173,7 +205,7 @@ impl Rendering {
     /// [`Error::Io`].
     pub fn write(&self, folder: impl AsRef<Path>) -> Result<()> {
         let folder = folder.as_ref();
-        std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+        atomic::folder(folder)?;
         let mut hashes = Vec::with_capacity(self.images.len());
         for (i, images) in self.images.iter().enumerate() {
             let path = |name: &str| folder.join(format!("view-{i:02}-{name}"));
@@ -187,9 +219,6 @@ impl Rendering {
                 ("depth".into(), hash::plane_sha256(&images.depths)),
             ]));
         }
-        let scene = view::file::to_json(&self.views, &hashes)?;
-        atomic::write(&folder.join("scene.json"), |file| {
-            file.write_all(scene.as_bytes())
-        })
+        write_scene(folder, &self.views, &hashes)
     }
 }

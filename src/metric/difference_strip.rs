@@ -3,7 +3,7 @@
 use super::difference::{Levels, signed_picture};
 use crate::{
     Result,
-    encode::sheet::{Ink, Style, Tile, sheet},
+    encode::sheet::{Ink, PADDING, sheet},
     num::Grid,
 };
 
@@ -19,18 +19,9 @@ pub fn difference_strip<P: Ink + Levels>(
     let difference = signed_picture(expected, actual, scale)?;
     let label = format!("difference x{scale}");
     let tiles = [
-        Tile {
-            picture: expected,
-            label: "expected",
-        },
-        Tile {
-            picture: actual,
-            label: "actual",
-        },
-        Tile {
-            picture: &difference,
-            label: &label,
-        },
+        (expected, "expected"),
+        (actual, "actual"),
+        (&difference, &label),
     ];
-    sheet(&tiles, 3, Style::default())
+    sheet(&tiles, 3, PADDING)
 }

@@ -3,10 +3,7 @@
 use super::Collector;
 use crate::{
     Error, Result,
-    encode::{
-        png::Picture,
-        sheet::{Style, Tile, sheet},
-    },
+    encode::{png::Picture, sheet::sheet},
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
     num::Each,
     raster::{Scene, luma_sums, mean_luma},
@@ -114,19 +111,11 @@ pub(super) fn side_by_side(
     for &cull in culls {
         let view = View { cull, ..view };
         for scene in &scenes {
-            pictures.push(mean_luma(&luma_sums(scene, &view, &views), views.samples));
+            let sums = luma_sums(scene, &view, &views);
+            pictures.push((mean_luma(&sums, views.samples), ""));
         }
     }
-    let tiles: Vec<_> = pictures
-        .iter()
-        .map(|picture| Tile { picture, label: "" })
-        .collect();
-    let style = Style {
-        padding: 0,
-        paper: 128,
-        ..Style::default()
-    };
-    let picture = sheet(&tiles, meshes.len() as u32, style)?;
+    let picture = sheet(&pictures, meshes.len() as u32, 0)?;
     collector.plane(name, &picture);
     collector.shown(Picture::Grey(picture));
     Ok(())

@@ -34,6 +34,17 @@ pub enum Projection {
     Orthographic,
 }
 
+impl Projection {
+    /// Orthographic where that is asked for, else perspective.
+    pub(crate) fn of(orthographic: bool) -> Self {
+        if orthographic {
+            Self::Orthographic
+        } else {
+            Self::Perspective
+        }
+    }
+}
+
 /// 1 / tan 30 degrees, the square root of 3 rounded to nearest: half the field of view is 30 degrees.
 const COTANGENT_OF_30_DEGREES: f64 = 1.732_050_807_568_877_2;
 

@@ -100,7 +100,12 @@ struct WorstPoint {
 }
 
 pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    options.check()?;
+    if !(0.0001..=1.0).contains(&options.precision) {
+        return Err(Error::Usage(format!(
+            "precision is {}; expected a share from 0.0001 to 1",
+            options.precision
+        )));
+    }
     let aperture = options.switch.aperture()?;
     let cell = options.cell.as_ref().map(file::read).transpose()?;
     let reference = input::read(&options.reference, true, terminal)?;
@@ -118,13 +123,8 @@ pub(super) fn run(options: &BoundArgs, common: &Common, terminal: &Terminal) -> 
     };
     let framed = cell.as_ref().map(|cell| cell.enter_frame(frame));
     let measured = |measure| {
-        surface::measure(
-            originals(own.in_frame_units()),
-            &nearest,
-            measure,
-            effort,
-            terminal,
-        )
+        let faces = originals(own.in_frame_units());
+        surface::measure(faces, &nearest, measure, effort, terminal)
     };
     let recorded = options.recorded(&reference, &low, frame)?;
     let found = match &framed {
@@ -165,16 +165,6 @@ struct Sections<'a> {
 }
 
 impl BoundArgs {
-    fn check(&self) -> Result<()> {
-        if !(0.0001..=1.0).contains(&self.precision) {
-            return Err(Error::Usage(format!(
-                "precision is {}; expected a share from 0.0001 to 1",
-                self.precision
-            )));
-        }
-        Ok(())
-    }
-
     /// Writes the report and prints the findings.
     fn tell(
         &self,
@@ -210,12 +200,10 @@ impl BoundArgs {
         };
         let bytes = bytes::read(path)?;
         let original = mesh::canonical(reference).mesh;
-        let pairs = correspondence::pairs(&bytes, path, &original, low)?.ok_or_else(|| {
-            Error::input(
-                path,
-                format!("does not belong to {}", self.reference.display()),
-            )
-        })?;
+        let Some(pairs) = correspondence::pairs(&bytes, path, &original, low)? else {
+            let told = format!("does not belong to {}", self.reference.display());
+            return Err(Error::input(path, told));
+        };
         let inside = |pair: Pair| Pair {
             from: pair.from.each(|p| frame.enter(p)),
             to: pair.to.each(|p| frame.enter(p)),
@@ -228,10 +216,8 @@ impl BoundArgs {
 /// Refuses a mesh without vertices; one without triangles is a point cloud.
 fn require_vertices(path: &Path, mesh: &Mesh, terminal: &Terminal) -> Result<()> {
     if mesh.positions().is_empty() {
-        return Err(Error::input(
-            path,
-            "the file has neither triangles nor vertices; expected at least one vertex",
-        ));
+        let told = "the file has neither triangles nor vertices; expected at least one vertex";
+        return Err(Error::input(path, told));
     }
     if mesh.triangles().is_empty() {
         terminal.say(&format!(
@@ -267,10 +253,9 @@ impl Found {
                 triangle: w.triangle,
             }),
             pieces: bound.pieces,
-            map: if recorded {
-                "correspondence"
-            } else {
-                "nearest triangle"
+            map: match recorded {
+                true => "correspondence",
+                false => "nearest triangle",
             },
             claims: claims.map(|claims| ClaimsInDegrees {
                 vertices_deg: claims.vertices.to_degrees(),
@@ -283,11 +268,8 @@ impl Found {
         answer!("guaranteed        {:.6} degrees", self.bound_deg);
         answer!("attained          {:.6} degrees", self.attained_deg);
         if let Some(worst) = &self.worst {
-            answer!(
-                "  by the point    {:?} of triangle {}",
-                worst.point,
-                worst.triangle
-            );
+            let (point, triangle) = (worst.point, worst.triangle);
+            answer!("  by the point    {point:?} of triangle {triangle}");
             answer!("  replaced by     {:?}", worst.replacement);
             match &worst.viewpoint {
                 Some(viewpoint) => answer!("  as seen from    {viewpoint:?}"),

@@ -49,20 +49,19 @@ pub(super) fn write(
         return Ok(());
     };
     let set = views(size, meshes, worst, eye)?;
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    atomic::folder(folder)?;
     let scenes = meshes.each(Scene::of);
     for (view, name) in set.views.iter().zip(["worst-view.png", "worst-zoom.png"]) {
         terminal.step("pictures", 0, 0)?;
-        let draw =
-            |scene: &Scene| raster::mean_luma(&raster::luma_sums(scene, view, &set), set.samples);
-        let [expected, actual] = [draw(&scenes[0]), draw(&scenes[1])];
+        let [expected, actual] = [0, 1].each(|i| {
+            let sums = raster::luma_sums(&scenes[i], view, &set);
+            raster::mean_luma(&sums, set.samples)
+        });
         let strip = difference_strip(&expected, &actual, SCALE)?;
         png::write_grey(&folder.join(name), &strip)?;
     }
     let text = view::file::to_json(&set.leave_frame(frame), &[])?;
-    atomic::write(&folder.join("views.json"), |file| {
-        file.write_all(text.as_bytes())
-    })
+    atomic::write_bytes(&folder.join("views.json"), text.as_bytes())
 }
 
 /// The whole scene around the worst point, and the point with what stands for it.
@@ -82,11 +81,8 @@ fn views(size: u32, meshes: [&FramedMesh; 2], worst: &Worst, eye: DVec3) -> Resu
     // Half of the distance: the near plane is flat, and what is nearest may be at the side.
     let near = (0.5 * near).min(0.5 * far).max(NEAREST * far);
     let back = eye - target;
-    let up = if back.y.abs() > 0.9 * length(back) {
-        DVec3::Z
-    } else {
-        DVec3::Y
-    };
+    let steep = back.y.abs() > 0.9 * length(back);
+    let up = if steep { DVec3::Z } else { DVec3::Y };
     let view = View::perspective([eye, target, up], [near, far], [size; 2])
         .ok_or_else(|| Error::Internal("a viewpoint outside the mesh sees it".into()))?;
     let half_width = tan(std::f64::consts::FRAC_PI_6);

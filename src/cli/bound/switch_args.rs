@@ -12,12 +12,8 @@ use crate::{
 #[derive(Clone, Debug, clap::Args, serde::Serialize)]
 pub(super) struct SwitchArgs {
     /// Say from which distance on LOW is seen less than this off REF, in degrees
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        allow_negative_numbers = true,
-        conflicts_with = "switch_px"
-    )]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(conflicts_with = "switch_px")]
     switch_deg: Option<f64>,
     /// Say from which distance on LOW is seen less than this many pixels off REF, in the middle of the screen
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
@@ -26,13 +22,8 @@ pub(super) struct SwitchArgs {
     #[arg(long, value_name = "PIXELS", default_value_t = 1080, requires = "switch_px", value_parser = clap::value_parser!(u32).range(1..))]
     screen_height: u32,
     /// Angle from its lower to its upper side, in degrees
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 60.0,
-        requires = "switch_px",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
+    #[arg(requires = "switch_px", allow_negative_numbers = true)]
     fov: f64,
 }
 
@@ -72,15 +63,11 @@ impl Found {
     pub(super) fn tell(&self) {
         answer!("distance          at most {}", self.distance_bound);
         if self.switch_distance.is_infinite() {
-            answer!(
+            return answer!(
                 "switch            at no distance: without an angle every displacement is seen"
             );
-            return;
         }
-        answer!(
-            "switch            from a distance of {} on: at most {:.6} degrees",
-            self.switch_distance,
-            self.switch_angle_deg
-        );
+        let (distance, degrees) = (self.switch_distance, self.switch_angle_deg);
+        answer!("switch            from a distance of {distance} on: at most {degrees:.6} degrees");
     }
 }

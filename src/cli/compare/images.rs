@@ -4,13 +4,14 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{CompareArgs, Found, has_extension, verdict};
+use super::{CompareArgs, Found};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, contact_sheet::contact_sheet, report, table, terminal::Terminal},
+    cli::{Common, Verdict, has_extension, report, table, terminal::Terminal},
     encode::{
         npy,
         png::{self, Picture},
+        sheet::{PADDING, sheet},
     },
     metric::{
         difference::{ImageComparison, compare},
@@ -45,12 +46,9 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
     let (expected, candidates) = images
         .split_first()
         .ok_or_else(|| Error::Internal("a reference without a file".into()))?;
-    let found = options
-        .candidates
-        .iter()
-        .zip(candidates)
-        .map(|(path, actual)| judge(&options.reference, expected, path, actual))
-        .collect::<Result<Vec<_>>>()?;
+    let found = options.candidates.iter().zip(candidates);
+    let found = found.map(|(path, actual)| judge(&options.reference, expected, path, actual));
+    let found = found.collect::<Result<Vec<_>>>()?;
     let holds = found.iter().all(|j| options.holds(j.equal, j.rms));
     if let Some(path) = &options.difference {
         write_difference(options, path, expected, candidates)?;
@@ -67,17 +65,15 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
     let findings = Found::new(found);
     report(common, "compare", resolved, &findings)?;
     findings.as_slice().iter().for_each(show);
-    Ok(verdict(holds))
+    Ok(Verdict::of(holds))
 }
 
 fn show(judgement: &Judgement<'_>) {
     let name = judgement.candidate.display();
     answer!("{name}: {}", judgement.comparison);
     if let Some(rms) = judgement.rms.filter(|_| !judgement.equal) {
-        answer!(
-            "{name}: luma differs by {rms:.4} levels RMS, PSNR {}",
-            table::number(judgement.psnr, 2)
-        );
+        let psnr = table::number(judgement.psnr, 2);
+        answer!("{name}: luma differs by {rms:.4} levels RMS, PSNR {psnr}");
     }
 }
 
@@ -94,9 +90,10 @@ fn refuse_foreign(options: &CompareArgs) -> Result<()> {
         ("--red-differences", options.red_differences.is_some()),
     ];
     match foreign.iter().find(|(_, given)| *given) {
-        Some((name, _)) => Err(Error::Usage(format!(
-            "{name} means nothing to images; leave it out"
-        ))),
+        Some((name, _)) => {
+            let told = format!("{name} means nothing to images; leave it out");
+            Err(Error::Usage(told))
+        }
         None => Ok(()),
     }
 }
@@ -145,15 +142,11 @@ fn pictures(
         (Picture::Grey(e), Picture::Grey(a)) => compare(e, a),
         _ => compare(&expected.clone().into_rgb(), &actual.clone().into_rgb()),
     };
-    let error = match comparison {
-        ImageComparison::Sizes { .. } => None,
-        _ => Some(squared_error(
-            &expected.clone().into_luma(),
-            &actual.clone().into_luma(),
-            1,
-        )?),
-    };
-    Ok((comparison, error))
+    if matches!(comparison, ImageComparison::Sizes { .. }) {
+        return Ok((comparison, None));
+    }
+    let [expected, actual] = [expected, actual].map(|picture| picture.clone().into_luma());
+    Ok((comparison, Some(squared_error(&expected, &actual, 1)?)))
 }
 
 fn write_difference(
@@ -176,5 +169,5 @@ fn write_difference(
         let strip = difference_strip(&expected, &picture(candidate)?, options.difference_scale())?;
         strips.push((strip, file.display().to_string()));
     }
-    png::write_rgb(path, &contact_sheet(&strips, 1)?)
+    png::write_rgb(path, &sheet(&strips, 1, PADDING)?)
 }

@@ -31,10 +31,9 @@ fn shape_cells(file: &Path, shape: &MeshShape) -> Vec<String> {
 }
 
 /// Root mean squares, then signal-to-noise ratios.
-fn error_cells(rms: [f64; 2], psnr: [Option<f64>; 2]) -> Vec<String> {
-    let rms = rms.iter().map(|rms| format!("{rms:.4}"));
-    rms.chain(psnr.iter().map(|&psnr| table::number(psnr, 2)))
-        .collect()
+fn error_cells(rms: [f64; 2], psnr: [Option<f64>; 2]) -> impl Iterator<Item = String> {
+    let rms = rms.into_iter().map(|rms| format!("{rms:.4}"));
+    rms.chain(psnr.into_iter().map(|psnr| table::number(psnr, 2)))
 }
 
 /// Prints a row for every mesh, the worst views, equation 5.11 and, where asked for, every view.
@@ -50,10 +49,8 @@ pub(super) fn show(options: &CompareArgs, reference: &MeshShape, found: &[Judgem
         let percent = |f: fn(Distances) -> f64| distances.map(|d| 100.0 * f(d));
         let folds = j.errors.folds.unwrap_or_default();
         let mut row = shape_cells(j.candidate.file, &j.candidate.shape);
-        row.extend(error_cells(
-            [errors.rms_flat, errors.rms_gouraud],
-            [errors.psnr_flat, errors.psnr_gouraud],
-        ));
+        let psnr = [errors.psnr_flat, errors.psnr_gouraud];
+        row.extend(error_cells([errors.rms_flat, errors.rms_gouraud], psnr));
         row.extend([
             table::number(percent(|d| d.mean), 5),
             table::number(percent(|d| d.max), 4),
@@ -65,24 +62,14 @@ pub(super) fn show(options: &CompareArgs, reference: &MeshShape, found: &[Judgem
     }
     answer!("{}", table::aligned(&rows));
     for j in found {
-        let worst = j.pictures.worst;
-        answer!(
-            "{}: worst in view {}, {}: RMS {:.4}",
-            j.candidate.file.display(),
-            worst.view,
-            shading_name(worst),
-            worst.error.rms()
-        );
+        let (file, worst) = (j.candidate.file.display(), j.pictures.worst);
+        let (view, shading, rms) = (worst.view, shading_name(worst), worst.error.rms());
+        answer!("{file}: worst in view {view}, {shading}: RMS {rms:.4}");
     }
     for j in found {
         if let Some(e) = &j.errors.image_error {
-            answer!(
-                "{}: image error {:.1} (equation 5.11, {} views), RMS {:.4}",
-                j.candidate.file.display(),
-                e.error,
-                e.views,
-                e.rms
-            );
+            let (file, error, views, rms) = (j.candidate.file.display(), e.error, e.views, e.rms);
+            answer!("{file}: image error {error:.1} (equation 5.11, {views} views), RMS {rms:.4}");
         }
     }
     if options.per_view {
@@ -97,10 +84,8 @@ fn view_table(views: &[ViewReport]) -> String {
     let mut rows = vec![table::head("view|RMS flat|Gouraud|PSNR flat|Gouraud")];
     for v in views {
         let mut row = vec![v.view.to_string()];
-        row.extend(error_cells(
-            [v.rms_flat, v.rms_gouraud],
-            [v.psnr_flat, v.psnr_gouraud],
-        ));
+        let psnr = [v.psnr_flat, v.psnr_gouraud];
+        row.extend(error_cells([v.rms_flat, v.rms_gouraud], psnr));
         rows.push(row);
     }
     table::aligned(&rows)

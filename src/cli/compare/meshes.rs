@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{CompareArgs, Found, mesh_table, sheets, verdict};
+use super::{CompareArgs, Found, mesh_table, sheets};
 use crate::{
     Error, Result,
     cli::{Common, Verdict, input, report, terminal::Terminal},
@@ -53,10 +53,8 @@ struct Findings<'a> {
 }
 
 pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
-    let mut sources = Vec::new();
-    for path in options.files() {
-        sources.push(read(path, terminal)?);
-    }
+    let sources = options.files().map(|path| read(path, terminal));
+    let sources = sources.collect::<Result<Vec<_>>>()?;
     let (reference, candidates) = sources
         .split_first()
         .ok_or_else(|| Error::Internal("a reference without a file".into()))?;
@@ -81,7 +79,7 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
     report(common, "compare", options.in_report(set), &findings)?;
     terminal.finish();
     mesh_table::show(options, &findings.reference.shape, found);
-    Ok(verdict(holds))
+    Ok(Verdict::of(holds))
 }
 
 fn read<'a>(path: &'a Path, terminal: &Terminal) -> Result<Source<'a>> {
@@ -101,9 +99,8 @@ impl<'a> Findings<'a> {
         candidates: &'a [Source<'a>],
     ) -> Result<Self> {
         let mut found = Vec::new();
-        for (source, CandidateReport { shape, errors }) in
-            candidates.iter().zip(comparison.candidates)
-        {
+        for (source, report) in candidates.iter().zip(comparison.candidates) {
+            let CandidateReport { shape, errors } = report;
             found.push(Judgement {
                 candidate: FileShape::new(source, shape),
                 equal: source.sha256 == reference.sha256,

@@ -10,7 +10,7 @@ mod sheets;
 
 use std::path::{Path, PathBuf};
 
-use super::{Common, Verdict, file_help, terminal::Terminal};
+use super::{Common, Verdict, file_help, has_extension, terminal::Terminal};
 use crate::{Error, Result, metric::surface::DEFAULT_SAMPLES, view::ViewsName};
 
 /// Measure how far meshes or images are from a reference
@@ -91,17 +91,15 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
 impl CompareArgs {
     /// The reference, then the candidates.
     fn files(&self) -> impl Iterator<Item = &Path> {
-        std::iter::once(&self.reference)
-            .chain(&self.candidates)
-            .map(PathBuf::as_path)
+        let all = std::iter::once(&self.reference).chain(&self.candidates);
+        all.map(PathBuf::as_path)
     }
 
     /// Refuses values without a meaning, before anything is read.
     fn check(&self) -> Result<()> {
         if let Some(rms) = self.max_rms.filter(|r| !(0.0..=255.0).contains(r)) {
-            return Err(Error::Usage(format!(
-                "max-rms is {rms}; expected a number from 0 to 255"
-            )));
+            let told = format!("max-rms is {rms}; expected a number from 0 to 255");
+            return Err(Error::Usage(told));
         }
         match &self.difference {
             Some(path) if !has_extension(path, "png") => Err(Error::Usage(format!(
@@ -136,11 +134,6 @@ fn is_image(path: &Path) -> bool {
     has_extension(path, "png") || has_extension(path, "npy")
 }
 
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
-}
-
 /// The findings of one candidate at the top of a report, those of several in a list.
 #[derive(Debug, serde::Serialize)]
 #[serde(untagged)]
@@ -151,12 +144,9 @@ enum Found<T> {
 
 impl<T> Found<T> {
     fn new(mut all: Vec<T>) -> Self {
-        match all.pop() {
-            Some(only) if all.is_empty() => Self::One(only),
-            last => {
-                all.extend(last);
-                Self::Several { candidates: all }
-            }
+        match all.len() {
+            1 => Self::One(all.remove(0)),
+            _ => Self::Several { candidates: all },
         }
     }
 
@@ -165,13 +155,5 @@ impl<T> Found<T> {
             Self::One(only) => std::slice::from_ref(only),
             Self::Several { candidates } => candidates,
         }
-    }
-}
-
-fn verdict(holds: bool) -> Verdict {
-    if holds {
-        Verdict::Good
-    } else {
-        Verdict::Negative
     }
 }

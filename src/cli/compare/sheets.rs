@@ -4,9 +4,12 @@ use std::path::Path;
 
 use super::{CompareArgs, mesh_table::shading_name, meshes::Judgement};
 use crate::{
-    Error, Progress, Result,
-    cli::{contact_sheet::contact_sheet, terminal::Terminal},
-    encode::png,
+    Progress, Result,
+    cli::terminal::Terminal,
+    encode::{
+        atomic, png,
+        sheet::{PADDING, sheet},
+    },
     mesh::Mesh,
     metric::{difference::red_picture, difference_strip, luma::squared_error, report::Judge},
     raster::Scene,
@@ -25,17 +28,13 @@ pub(super) fn write_worst(
     for (mesh, judgement) in candidates.iter().zip(found) {
         let worst = judgement.pictures.worst;
         let pictures = judge.pictures(&[&judge.scene(mesh)], worst.view, worst.shading)?;
-        let label = format!(
-            "{}: view {}, {}, RMS {:.4}",
-            judgement.candidate.file.display(),
-            worst.view,
-            shading_name(worst),
-            worst.error.rms()
-        );
+        let (file, view) = (judgement.candidate.file.display(), worst.view);
+        let (shading, rms) = (shading_name(worst), worst.error.rms());
+        let label = format!("{file}: view {view}, {shading}, RMS {rms:.4}");
         let scale = options.difference_scale();
         strips.push((difference_strip(&pictures[0], &pictures[1], scale)?, label));
     }
-    png::write_grey(path, &contact_sheet(&strips, 1)?)
+    png::write_grey(path, &sheet(&strips, 1, PADDING)?)
 }
 
 /// Writes Figure 8 of Zhang & Turk 2002 as `view-NN.png` for every view: below the reference and the candidates, above
@@ -47,7 +46,7 @@ pub(super) fn write_red(
     candidates: &[&Mesh],
     terminal: &Terminal,
 ) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    atomic::folder(folder)?;
     let scenes: Vec<Scene> = candidates.iter().map(|mesh| judge.scene(mesh)).collect();
     let scenes: Vec<&Scene> = scenes.iter().collect();
     let count = judge.views().map_or(0, |set| set.views.len());
@@ -69,7 +68,7 @@ pub(super) fn write_red(
         }
         let columns = above.len() as u32;
         above.extend(below);
-        let picture = contact_sheet(&above, columns)?;
+        let picture = sheet(&above, columns, PADDING)?;
         png::write_rgb(&folder.join(format!("view-{view:02}.png")), &picture)?;
     }
     terminal.say(&format!("{}: {count} pictures written", folder.display()));

@@ -7,10 +7,7 @@ use serde::Serialize;
 use crate::{
     Error, Progress, Result,
     mesh::{Mesh, content_sha256},
-    metric::{
-        luma::SquaredError,
-        report::{ImageError, Judge},
-    },
+    metric::{luma::SquaredError, report::Judge},
     simplify::{Outcome, Replay},
 };
 
@@ -83,12 +80,7 @@ pub(super) fn judged(
     let mut levels: Vec<Level> = Vec::with_capacity(found.len());
     for (level, report) in found.iter().zip(comparison.candidates) {
         let errors = report.errors;
-        let ImageError {
-            error: image_error,
-            rms,
-            squared_error,
-            ..
-        } = errors
+        let image = errors
             .image_error
             .ok_or_else(|| Error::Internal("a level without its image error".into()))?;
         let triangles = level.mesh.triangles().len();
@@ -99,16 +91,16 @@ pub(super) fn judged(
         let same = first.and_then(|_| levels.iter().find(|l| l.target == level.target));
         let less = same
             .filter(|l| l.reached && reached)
-            .map(|l| less(l.image_error, image_error));
+            .map(|l| less(l.image_error, image.error));
         levels.push(Level {
             method: level.method,
             percent: level.percent,
             target: level.target,
             triangles,
             reached,
-            image_error,
-            rms,
-            squared_error,
+            image_error: image.error,
+            rms: image.rms,
+            squared_error: image.squared_error,
             distance_mean: distance.map(|d| d.mean),
             distance_max: distance.map(|d| d.max),
             less,
@@ -138,9 +130,8 @@ pub(super) fn means(levels: &[Level]) -> Vec<(&'static str, f64)> {
             }
         }
     }
-    sums.into_iter()
-        .map(|(name, sum, count)| (name, sum / count))
-        .collect()
+    let mean = |(name, sum, count)| (name, sum / count);
+    sums.into_iter().map(mean).collect()
 }
 
 /// A line for each level below a line of names; empty where nothing was measured.

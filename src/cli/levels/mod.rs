@@ -8,7 +8,9 @@
 mod chart;
 mod judge;
 
-use std::{io::Write, path::PathBuf};
+use std::path::PathBuf;
+
+use serde_json::json;
 
 use super::{
     Common, Verdict, file_help, guidance_args::GuidanceArgs, input, report, table,
@@ -25,10 +27,8 @@ use crate::{
         surface::DEFAULT_SAMPLES,
     },
     simplify::{
-        MethodName, MethodOptions, Options as RunOptions, Outcome, Target,
-        image::{ImageOptions, Start},
-        simplify_guided, simplify_with,
-        visibility::VisibilityOptions,
+        MethodName, MethodOptions, Options as RunOptions, Outcome, Target, image::Start,
+        simplify_guided, simplify_with, visibility::VisibilityOptions,
     },
     visibility::Visibility,
 };
@@ -50,13 +50,8 @@ pub(super) struct LevelsArgs {
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Methods without an error of their own; the others are measured by the first one
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        value_name = "NAME,...",
-        default_value = "quadric,visibility"
-    )]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NAME,...")]
+    #[arg(default_value = "quadric,visibility")]
     methods: Vec<MethodName>,
     /// The levels, in % of the triangles
     #[arg(long, value_delimiter = ',', value_name = "PERCENT,...", default_value = "50,25,12,6,3,1.5,0.75", value_parser = parse_percent)]
@@ -95,15 +90,12 @@ fn bounded(method: MethodName) -> Error {
 }
 
 fn parse_percent(text: &str) -> Result<f64, String> {
-    let percent: f64 = text
-        .parse()
-        .map_err(|_| "expected numbers such as 50,25,12.5".to_string())?;
-    if percent > 0.0 && percent <= 100.0 {
-        Ok(percent)
-    } else {
-        Err(format!(
+    match text.parse() {
+        Ok(percent) if percent > 0.0 && percent <= 100.0 => Ok(percent),
+        Ok(_) => Err(format!(
             "{text} % is no level; expected above 0 and up to 100"
-        ))
+        )),
+        Err(_) => Err("expected numbers such as 50,25,12.5".into()),
     }
 }
 
@@ -112,9 +104,8 @@ impl LevelsArgs {
     fn check(&self) -> Result<Vec<f64>> {
         for (i, method) in self.methods.iter().enumerate() {
             if self.methods[..i].contains(method) {
-                return Err(Error::Usage(
-                    "--methods names a method twice; expected different ones".into(),
-                ));
+                let told = "--methods names a method twice; expected different ones";
+                return Err(Error::Usage(told.into()));
             }
         }
         if let Some(&method) = self.methods.iter().find(|m| m.defaults().is_none()) {
@@ -159,10 +150,8 @@ impl LevelsArgs {
         visibility: Option<&Visibility>,
         terminal: &Terminal,
     ) -> Result<Outcome> {
-        let (finest, coarsest) = match targets {
-            [first, .., last] => (*first, *last),
-            [only] => (*only, *only),
-            [] => return Err(Error::Internal("no levels".into())),
+        let (Some(&finest), Some(&coarsest)) = (targets.first(), targets.last()) else {
+            return Err(Error::Internal("no levels".into()));
         };
         let amount = Target::Triangles(coarsest as u64);
         let own = method.defaults().ok_or_else(|| bounded(method))?;
@@ -173,11 +162,7 @@ impl LevelsArgs {
         }
         match &mut options.method {
             MethodOptions::Image(own) => {
-                let start = Start::Auto.triangles(Some(finest));
-                *own = ImageOptions {
-                    start: Start::Triangles(start as u64),
-                    ..own.clone()
-                };
+                own.start = Start::Triangles(Start::Auto.triangles(Some(finest)) as u64);
             }
             MethodOptions::Visibility(own) => {
                 *own = VisibilityOptions {
@@ -203,16 +188,12 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
     let visibility = options.guidance.read(&mesh)?;
     let count = mesh.triangles().len();
     let folder = &options.folder;
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    atomic::folder(folder)?;
     let (csv, svg) = (folder.join("levels.csv"), folder.join("levels.svg"));
-    input::require_outputs(
-        [Some(&csv), Some(&svg), common.json.as_ref()]
-            .into_iter()
-            .flatten(),
-    )?;
-    let targets = percents
-        .iter()
-        .filter_map(|p| Target::ratio(p / 100.0).of(count).transpose())
+    input::require_outputs([&csv, &svg].into_iter().chain(&common.json))?;
+    let targets = percents.iter().map(|p| Target::ratio(p / 100.0).of(count));
+    let targets = targets
+        .filter_map(Result::transpose)
         .collect::<Result<Vec<_>>>()?;
     let judge = Judge::new(&mesh, &options.judged_by())?;
     let (mut runs, mut reached) = (Vec::new(), Vec::new());
@@ -224,35 +205,25 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
             io::write(&folder.join(name), &level.mesh)?;
         }
         reached.extend(levels);
-        runs.push(serde_json::json!({ "options": outcome.options, "v_mesh": outcome.v_mesh() }));
+        runs.push(json!({ "options": outcome.options, "v_mesh": outcome.v_mesh() }));
     }
     let levels = judge::judged(&judge, &reached, terminal)?;
-    let text = judge::csv(&levels);
-    atomic::write(&csv, |file: &mut dyn Write| file.write_all(text.as_bytes()))?;
+    atomic::write_bytes(&csv, judge::csv(&levels).as_bytes())?;
     let title = format!("{}, {count} triangles", options.input.display());
-    let chart = chart::svg(&title, &levels);
-    atomic::write(&svg, |file: &mut dyn Write| {
-        file.write_all(chart.as_bytes())
-    })?;
+    atomic::write_bytes(&svg, chart::svg(&title, &levels).as_bytes())?;
     let means = judge::means(&levels);
+    let less = means
+        .iter()
+        .map(|&(name, mean)| json!({ "method": name, "percent": mean }));
+    let less: Vec<_> = less.collect();
     report(
         common,
         "levels",
-        serde_json::json!({
-            "input": options.input,
-            "levels": percents,
-            "size": options.size,
-            "samples": options.samples,
-            "distance_samples": options.distance_samples(),
-            "runs": runs,
+        json!({
+            "input": options.input, "levels": percents, "size": options.size, "samples": options.samples,
+            "distance_samples": options.distance_samples(), "runs": runs,
         }),
-        serde_json::json!({
-            "triangles_in": count,
-            "levels": levels,
-            "mean_less_image_error": means.iter().map(|&(name, mean)| {
-                serde_json::json!({ "method": name, "percent": mean })
-            }).collect::<Vec<_>>(),
-        }),
+        json!({ "triangles_in": count, "levels": levels, "mean_less_image_error": less }),
     )?;
     terminal.finish();
     show(&levels, &means, terminal);

@@ -10,12 +10,8 @@ use crate::{
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct DistanceArgs {
     /// Largest distance between input and result, as a fraction of the bounding-box diagonal
-    #[arg(
-        long,
-        value_name = "E",
-        allow_negative_numbers = true,
-        conflicts_with = "error_abs"
-    )]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    #[arg(conflicts_with = "error_abs")]
     error: Option<f64>,
     /// Largest distance between input and result, in the units of the file
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]

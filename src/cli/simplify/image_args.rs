@@ -44,21 +44,17 @@ impl ImageArgs {
     /// # Errors
     /// [`Error::Usage`] for an option that is part of the view file.
     pub(super) fn options(&self) -> Result<ImageOptions> {
+        let sized = self.size.is_some() || self.samples.is_some();
         if let Some(ViewsName::File(path)) = &self.views
-            && (self.size.is_some()
-                || self.samples.is_some()
-                || self.shading.is_some()
-                || self.interior_views.is_some())
+            && (sized || self.shading.is_some() || self.interior_views.is_some())
         {
             return Err(Error::Usage(format!(
                 "--size, --samples, --shading and --interior-views are part of the view file {}; leave them out",
                 path.display()
             )));
         }
-        let default = self
-            .preset
-            .unwrap_or_default()
-            .shaded(self.shading.unwrap_or_default());
+        let (preset, shading) = (self.preset.unwrap_or_default(), self.shading);
+        let default = preset.shaded(shading.unwrap_or_default());
         Ok(ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
             size: self.size.map_or(default.size, Size::Pixels),

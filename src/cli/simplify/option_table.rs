@@ -81,10 +81,9 @@ const GROUPS: &[Group] = &[
 /// # Errors
 /// [`Error::Usage`] where one that it needs is missing or out of range; what reading a file says.
 pub(super) fn method_options(args: &SimplifyArgs) -> Result<MethodOptions> {
-    let quadric = if args.probabilistic {
-        QuadricOptions::probabilistic()
-    } else {
-        QuadricOptions::default()
+    let quadric = match args.probabilistic {
+        true => QuadricOptions::probabilistic(),
+        false => QuadricOptions::default(),
     };
     Ok(match args.method {
         Image => MethodOptions::Image(args.image.options()?),

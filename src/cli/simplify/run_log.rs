@@ -22,15 +22,13 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
         terminal.say(&format!("RMS over the driving views: {rms:.3} levels"));
     }
     if let Some(c) = outcome.comparison() {
+        let returned = match c.fell_back {
+            true => "; the memoryless result is returned",
+            false => "",
+        };
         terminal.say(&format!(
-            "RMS over views that drove nothing: {:.3} levels, by the memoryless method {:.3}{}",
-            c.image,
-            c.memoryless,
-            if c.fell_back {
-                "; the memoryless result is returned"
-            } else {
-                ""
-            }
+            "RMS over views that drove nothing: {:.3} levels, by the memoryless method {:.3}{returned}",
+            c.image, c.memoryless
         ));
     }
     if let Some(g) = outcome.guarantee() {
@@ -66,15 +64,14 @@ fn tell_phase(phase: &Phase, terminal: &Terminal) {
 }
 
 fn tell_polish(polish: &PolishCounters, terminal: &Terminal) {
+    let (moves, flips, evaluations) = (polish.moves, polish.flips, polish.evaluations);
     terminal.say(&format!(
-        "polish: {} moves, {} flips; {} evaluations",
-        polish.moves, polish.flips, polish.evaluations
+        "polish: {moves} moves, {flips} flips; {evaluations} evaluations"
     ));
     for (i, [before, after]) in polish.cameras.iter().enumerate() {
-        let before_that = if i == 0 {
-            ""
-        } else {
-            ", which had driven nothing"
+        let before_that = match i {
+            0 => "",
+            _ => ", which had driven nothing",
         };
         terminal.say(&format!(
             "polish: RMS from {before:.3} to {after:.3} levels over camera set {}{before_that}",

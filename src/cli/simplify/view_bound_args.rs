@@ -18,20 +18,12 @@ pub(super) struct ViewBoundArgs {
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
     /// The largest angle between a point and what stands for it, in degrees, 0 to below 90
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        allow_negative_numbers = true,
-        conflicts_with = "error_px"
-    )]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(conflicts_with = "error_px")]
     error_deg: Option<f64>,
     /// The same as pixels in the middle of a screen; needs --screen-height
-    #[arg(
-        long,
-        value_name = "PIXELS",
-        allow_negative_numbers = true,
-        requires = "screen_height"
-    )]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
+    #[arg(requires = "screen_height")]
     error_px: Option<f64>,
     /// Height of the screen for --error-px
     #[arg(long, value_name = "PIXELS", requires = "error_px", value_parser = clap::value_parser!(u32).range(1..))]
@@ -69,16 +61,13 @@ impl ViewBoundArgs {
             (Some(degrees), _) => degrees,
             (None, Some(pixels)) => self.angle_of(pixels)?,
             (None, None) => {
-                return Err(Error::Usage(
-                    "the method `view-bounded` needs --error-deg DEGREES or --error-px PIXELS"
-                        .into(),
-                ));
+                let told =
+                    "the method `view-bounded` needs --error-deg DEGREES or --error-px PIXELS";
+                return Err(Error::Usage(told.into()));
             }
         };
-        Ok(ViewBoundedOptions::new(
-            view_cell::file::read(path)?,
-            error_deg,
-        ))
+        let cell = view_cell::file::read(path)?;
+        Ok(ViewBoundedOptions::new(cell, error_deg))
     }
 
     /// The angle in degrees that this many pixels take up in the middle of the screen; elsewhere they take up less.

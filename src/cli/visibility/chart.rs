@@ -20,6 +20,7 @@ pub(super) fn csv(steps: &[ConvergenceStep]) -> String {
 /// The steps as an SVG picture; cameras on a logarithmic axis.
 pub(super) fn svg(steps: &[ConvergenceStep]) -> String {
     let highest = steps.iter().fold(0.0, |m, s| f64::max(m, s.error));
+    let points = steps.iter().map(|s| [f64::from(s.cameras), s.error]);
     LineChart {
         title: "Visibility error against 4,098 cameras".into(),
         size: [720.0, 480.0],
@@ -32,10 +33,7 @@ pub(super) fn svg(steps: &[ConvergenceStep]) -> String {
         right: None,
         series: vec![Series {
             name: String::new(),
-            points: steps
-                .iter()
-                .map(|s| [f64::from(s.cameras), s.error])
-                .collect(),
+            points: points.collect(),
             labels: steps.iter().map(|s| s.cameras.to_string()).collect(),
             side: Side::Left,
             color: "#1f50b4",

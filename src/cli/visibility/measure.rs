@@ -8,7 +8,7 @@ use std::{
 use super::{chart, merge};
 use crate::{
     Error, Result,
-    cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
+    cli::{Common, Verdict, file_help, has_extension, input, report, terminal::Terminal},
     encode::{atomic, npy},
     io,
     mesh::Mesh,
@@ -99,13 +99,10 @@ fn parse_range(text: &str) -> Result<Range<u32>, String> {
 /// Parses a number of cameras into the number of subdivisions of the octahedron.
 pub(in crate::rooms::cli) fn parse_cameras(text: &str) -> Result<u32, String> {
     let known = [6, 18, 66, 258, 1_026, 4_098_u32];
-    let found = text
-        .parse()
-        .ok()
-        .and_then(|count: u32| known.iter().position(|&k| k == count));
-    found
-        .map(|k| k as u32)
-        .ok_or_else(|| "expected 6, 18, 66, 258, 1026 or 4098 cameras".into())
+    let count: Option<u32> = text.parse().ok();
+    let found = known.iter().position(|&k| Some(k) == count);
+    let expected = || "expected 6, 18, 66, 258, 1026 or 4098 cameras".into();
+    found.map(|k| k as u32).ok_or_else(expected)
 }
 
 fn parse_limit(text: &str) -> Result<EdgeLimit, String> {
@@ -118,10 +115,9 @@ fn parse_limit(text: &str) -> Result<EdgeLimit, String> {
 
 impl Choice {
     fn resolve(&self) -> Result<MeasureOptions> {
-        let default = if self.paper {
-            MeasureOptions::paper()
-        } else {
-            MeasureOptions::default()
+        let default = match self.paper {
+            true => MeasureOptions::paper(),
+            false => MeasureOptions::default(),
         };
         let resolved = MeasureOptions {
             octahedron: self.cameras.unwrap_or(default.octahedron),
@@ -140,51 +136,47 @@ impl Choice {
     }
 }
 
-pub(in crate::rooms::cli) fn run(
-    options: &VisibilityArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    let figure = options.convergence.as_ref();
+pub(crate) fn run(args: &VisibilityArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    let figure = args.convergence.as_ref();
     let figure = figure.map(|path| ["csv", "svg"].map(|kind| named(path, kind)));
-    check_outputs(options, figure.as_ref(), common)?;
-    let survey = options.from.as_deref().map(merge::read).transpose()?;
+    check_outputs(args, figure.as_ref(), common)?;
+    let survey = args.from.as_deref().map(merge::read).transpose()?;
     let measurement = match &survey {
         Some(survey) => *survey.options(),
-        None => options.choice.resolve()?,
+        None => args.choice.resolve()?,
     };
-    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
-    input::require_triangles(&options.input, &mesh)?;
-    let mesh = input::canonical(&options.input, mesh, terminal);
-    input::require_triangles(&options.input, &mesh)?;
-    let resolved = serde_json::json!({ "input": options.input, "measurement": measurement });
-    if let (Some(range), Some(path)) = (&options.view_range, &options.partial) {
+    let mesh = input::read(&args.input, !args.no_weld, terminal)?;
+    input::require_triangles(&args.input, &mesh)?;
+    let mesh = input::canonical(&args.input, mesh, terminal);
+    input::require_triangles(&args.input, &mesh)?;
+    let resolved = serde_json::json!({ "input": args.input, "measurement": measurement });
+    if let (Some(range), Some(path)) = (&args.view_range, &args.partial) {
         let part = PartialVisibility::of_views(&mesh, &measurement, range.clone(), terminal)?;
         merge::write(path, &part)?;
         report(common, "visibility", resolved, merge::summary(&part))?;
         merge::tell(path, &part);
         return Ok(Verdict::Good);
     }
-    let (found, table) = measured(options, &mesh, &measurement, survey, terminal)?;
+    let (found, table) = measured(args, &mesh, &measurement, survey, terminal)?;
     let steps = match &figure {
         Some(_) => convergence(&mesh, &measurement, terminal)?,
         None => Vec::new(),
     };
-    let kept = match &options.remove_hidden {
-        Some(_) => Some(remove_hidden(&mesh, &found, options.rings.unwrap_or(0))?),
+    let kept = match &args.remove_hidden {
+        Some(_) => Some(remove_hidden(&mesh, &found, args.rings.unwrap_or(0))?),
         None => None,
     };
-    if let (Some(path), Some(table)) = (&options.table, &table) {
+    if let (Some(path), Some(table)) = (&args.table, &table) {
         npy::write_plane(path, table.packed())?;
     }
-    if let Some(path) = &options.out {
-        write(path, &visibility::ply::encode(&mesh, &found)?)?;
+    if let Some(path) = &args.out {
+        atomic::write_bytes(path, &visibility::ply::encode(&mesh, &found)?)?;
     }
     if let Some([csv, svg]) = &figure {
-        write(csv, chart::csv(&steps).as_bytes())?;
-        write(svg, chart::svg(&steps).as_bytes())?;
+        atomic::write_bytes(csv, chart::csv(&steps).as_bytes())?;
+        atomic::write_bytes(svg, chart::svg(&steps).as_bytes())?;
     }
-    if let (Some(path), Some(kept)) = (&options.remove_hidden, &kept) {
+    if let (Some(path), Some(kept)) = (&args.remove_hidden, &kept) {
         for note in io::write(path, kept)? {
             terminal.say(&format!("{}: {note}", path.display()));
         }
@@ -238,10 +230,8 @@ fn measured(
         }
         None => {
             let all = 0..measurement.cameras();
-            (
-                PartialVisibility::of_views(mesh, measurement, all, terminal)?,
-                None,
-            )
+            let survey = PartialVisibility::of_views(mesh, measurement, all, terminal)?;
+            (survey, None)
         }
     };
     let found = match &options.from {
@@ -260,9 +250,7 @@ fn check_outputs(
     common: &Common,
 ) -> Result<()> {
     if let Some(path) = &options.out
-        && path
-            .extension()
-            .is_none_or(|e| !e.eq_ignore_ascii_case("ply"))
+        && !has_extension(path, "ply")
     {
         return Err(Error::Usage(format!(
             "{}: colours and V(t) of faces are written as PLY only; choose a name that ends in .ply",
@@ -285,18 +273,13 @@ fn check_outputs(
 
 /// `path` with an extension, which replaces only another of those of the figure: `bunny-0.5` has none.
 fn named(path: &Path, extension: &str) -> PathBuf {
-    let known = |e: &std::ffi::OsStr| ["csv", "svg"].iter().any(|k| e.eq_ignore_ascii_case(k));
-    if path.extension().is_some_and(known) {
+    if has_extension(path, "csv") || has_extension(path, "svg") {
         return path.with_extension(extension);
     }
     let mut name = path.as_os_str().to_owned();
     name.push(".");
     name.push(extension);
     name.into()
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    atomic::write(path, |file| file.write_all(bytes))
 }
 
 fn tell(numbers: &Numbers<'_>, measurement: &MeasureOptions, steps: &[ConvergenceStep]) {
@@ -307,21 +290,13 @@ fn tell(numbers: &Numbers<'_>, measurement: &MeasureOptions, steps: &[Convergenc
         numbers.triangles,
         100.0 * numbers.never_seen_area
     );
-    answer!(
-        "cameras             {}, {} x {} pixels",
-        numbers.cameras,
-        measurement.size,
-        measurement.size
-    );
+    let (cameras, size) = (numbers.cameras, measurement.size);
+    answer!("cameras             {cameras}, {size} x {size} pixels");
     if let Some(kept) = numbers.triangles_kept {
         answer!("kept                {kept} triangles");
     }
     for step in steps {
-        answer!(
-            "with {:4} cameras   V(M) {:.6}, error {:.6}",
-            step.cameras,
-            step.mesh,
-            step.error
-        );
+        let (cameras, mesh, error) = (step.cameras, step.mesh, step.error);
+        answer!("with {cameras:4} cameras   V(M) {mesh:.6}, error {error:.6}");
     }
 }

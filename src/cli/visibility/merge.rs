@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::{Value, json};
+
 use crate::{
     Error, Result,
     cli::{Common, Verdict, file_help, input, report, terminal::Terminal},
@@ -22,13 +24,8 @@ pub(in crate::rooms::cli) struct MergeArgs {
     out: PathBuf,
 }
 
-pub(in crate::rooms::cli) fn run(
-    options: &MergeArgs,
-    common: &Common,
-    terminal: &Terminal,
-) -> Result<Verdict> {
-    let outputs = [Some(&options.out), common.json.as_ref()];
-    input::require_outputs(outputs.into_iter().flatten())?;
+pub(crate) fn run(options: &MergeArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
+    input::require_outputs([&options.out].into_iter().chain(&common.json))?;
     let mut sum: Option<PartialVisibility> = None;
     for path in &options.partials {
         let part = read(path)?;
@@ -43,33 +40,22 @@ pub(in crate::rooms::cli) fn run(
     let sum = sum.ok_or_else(|| Error::Usage("no files to merge; name at least one".into()))?;
     write(&options.out, &sum)?;
     if !sum.is_complete() {
-        terminal.say(&format!(
-            "not complete yet: views {} of {}",
-            ranges(&sum),
-            sum.options().cameras()
-        ));
+        let (ranges, cameras) = (ranges(&sum), sum.options().cameras());
+        terminal.say(&format!("not complete yet: views {ranges} of {cameras}"));
     }
-    report(
-        common,
-        "merge-visibility",
-        serde_json::json!({ "partials": options.partials, "measurement": sum.options() }),
-        summary(&sum),
-    )?;
+    let resolved = json!({ "partials": options.partials, "measurement": sum.options() });
+    report(common, "merge-visibility", resolved, summary(&sum))?;
     tell(&options.out, &sum);
     Ok(Verdict::Good)
 }
 
 /// Reads a survey.
-pub(super) fn read(path: &Path) -> Result<PartialVisibility> {
+pub(crate) fn read(path: &Path) -> Result<PartialVisibility> {
     PartialVisibility::from_bytes(&bytes::read(path)?, path)
 }
 
 /// The visibility that a survey in a file holds, which must be of `mesh` and of all views.
-pub(in crate::rooms::cli) fn finish(
-    path: &Path,
-    survey: &PartialVisibility,
-    mesh: &Mesh,
-) -> Result<Visibility> {
+pub(crate) fn finish(path: &Path, survey: &PartialVisibility, mesh: &Mesh) -> Result<Visibility> {
     let named = |message| format!("{}: {message}", path.display());
     survey.finish(mesh).map_err(|error| match error {
         Error::Usage(message) => Error::input(path, message),
@@ -80,17 +66,14 @@ pub(in crate::rooms::cli) fn finish(
 
 /// Writes a survey; an existing file is replaced as a whole.
 pub(super) fn write(path: &Path, survey: &PartialVisibility) -> Result<()> {
-    let bytes = survey.to_bytes();
-    atomic::write(path, |file| file.write_all(&bytes))
+    atomic::write_bytes(path, &survey.to_bytes())
 }
 
 /// The views and sizes of a survey, for a report.
-pub(super) fn summary(survey: &PartialVisibility) -> serde_json::Value {
+pub(super) fn summary(survey: &PartialVisibility) -> Value {
     let views: Vec<[u32; 2]> = survey.views().iter().map(|r| [r.start, r.end]).collect();
-    serde_json::json!({
-        "views": views,
-        "complete": survey.is_complete(),
-        "triangles": survey.triangle_count(),
+    json!({
+        "views": views, "complete": survey.is_complete(), "triangles": survey.triangle_count(),
         "cameras": survey.options().cameras(),
     })
 }

@@ -5,4 +5,4 @@ mod measure;
 mod merge;
 
 pub(super) use measure::{VisibilityArgs, parse_cameras, run};
-pub(super) use merge::{MergeArgs, finish, run as run_merge};
+pub(super) use merge::{MergeArgs, finish, read, run as run_merge};

@@ -137,7 +137,7 @@ mod tests {
             let direction = DVec3::from_array(direction);
             prop_assume!(direction.length_squared() > 1e-3);
             let projection =
-                if orthographic { Projection::Orthographic } else { Projection::Perspective };
+                Projection::of(orthographic);
             let sphere = Sphere::of_mesh(&mesh).expect("triangles");
             let set = ViewSet::around(&sphere, &[direction], 24, 16, projection)
                 .expect("views")

@@ -6,25 +6,19 @@ use std::{
     process::{Command, Output},
 };
 
+use glam::DVec3;
 use lodmark::{
     io,
     mesh::{content_sha256, generate},
 };
 use tempfile::TempDir;
 
-use crate::support::{code, command, expect, folder, lodmark, put, split, stderr, stdout};
+use crate::support::{bytes, code, command, expect, folder, lodmark, put, refused, stderr, stdout};
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into()
-        })
-        .collect();
+    let entries = fs::read_dir(folder).expect("a folder");
+    let entries = entries.map(|entry| entry.expect("an entry").file_name());
+    let mut names: Vec<String> = entries.map(|name| name.to_string_lossy().into()).collect();
     names.sort();
     names
 }
@@ -35,45 +29,34 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 fn a_request_without_sense_ends_with_2_and_says_what_to_do() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(1));
-    let simplify = |more: &[&'static str]| {
-        let mut words = vec!["simplify", "in.ply", "out.ply"];
-        words.extend(more);
-        words
-    };
     for (words, said) in [
-        (vec![], "Usage"),
-        (vec!["explode", "in.ply"], "no command `explode`"),
-        (vec!["simplify", "in.ply"], "OUT"),
-        (simplify(&[]), "--triangles"),
-        (simplify(&["--triangles", "0"]), "at least 1"),
-        (simplify(&["--triangles", "-1"]), "-1"),
-        (simplify(&["--triangles", "many"]), "--triangles"),
-        (simplify(&["--ratio", "0"]), "ratio"),
-        (simplify(&["--ratio", "1.5"]), "ratio"),
-        (simplify(&["--ratio", "NaN"]), "ratio"),
-        (
-            simplify(&["--ratio", "0.5", "--triangles", "5"]),
-            "cannot be used with",
-        ),
-        (simplify(&["-t", "9", "--method", "guess"]), "memoryless"),
-        (simplify(&["-t", "9", "--threads", "0"]), "--threads"),
-        (simplify(&["-t", "9", "--colour"]), "--colour"),
-        (
-            simplify(&["-t", "9", "--method", "quadric", "--size", "64"]),
-            "--size",
-        ),
-        (simplify(&["-t", "9", "--size", "0"]), "0"),
-        (simplify(&["-t", "9", "--views", "cube"]), "dodecahedron"),
-        (
-            simplify(&["--error-rms", "2", "--method", "memoryless"]),
-            "--error-rms",
-        ),
-        (simplify(&["--error-rms", "-1"]), "-1"),
-        (vec!["render", "in.ply", "d", "--samples", "3"], "samples"),
-        (vec!["render", "in.ply", "d", "--size", "9999"], "4096"),
+        ("", "Usage"),
+        ("explode in.ply", "no command `explode`"),
+        ("simplify in.ply", "OUT"),
+        ("render in.ply d --samples 3", "samples"),
+        ("render in.ply d --size 9999", "4096"),
     ] {
-        let message = expect(&dir, 2, &words);
-        assert!(message.contains(said), "{words:?} said {message}");
+        refused(&dir, 2, words, said);
+    }
+    for (more, said) in [
+        ("", "--triangles"),
+        ("--triangles 0", "at least 1"),
+        ("--triangles -1", "-1"),
+        ("--triangles many", "--triangles"),
+        ("--ratio 0", "ratio"),
+        ("--ratio 1.5", "ratio"),
+        ("--ratio NaN", "ratio"),
+        ("--ratio 0.5 --triangles 5", "cannot be used with"),
+        ("-t 9 --method guess", "memoryless"),
+        ("-t 9 --threads 0", "--threads"),
+        ("-t 9 --colour", "--colour"),
+        ("-t 9 --method quadric --size 64", "--size"),
+        ("-t 9 --size 0", "0"),
+        ("-t 9 --views cube", "dodecahedron"),
+        ("--error-rms 2 --method memoryless", "--error-rms"),
+        ("--error-rms -1", "-1"),
+    ] {
+        refused(&dir, 2, &format!("simplify in.ply out.ply {more}"), said);
     }
     assert_eq!(names(dir.path()), ["in.ply"], "nothing was made");
 }
@@ -81,7 +64,7 @@ fn a_request_without_sense_ends_with_2_and_says_what_to_do() {
 #[test]
 fn help_and_version_are_results_and_go_to_stdout() {
     let dir = folder();
-    for words in [&["--help"][..], &["--version"], &["simplify", "--help"]] {
+    for words in ["--help", "--version", "simplify --help"] {
         let output = lodmark(&dir, words);
         assert_eq!(code(&output), 0);
         assert!(stdout(&output).contains("lodmark"), "{words:?}");
@@ -105,22 +88,11 @@ fn a_damaged_file_is_named_with_the_place_of_the_damage() {
                     property list uchar int vertex_indices\nend_header\n";
     let mut huge_stl = vec![0_u8; 80];
     huge_stl.extend(u32::MAX.to_le_bytes());
+    let triangle = |from, to| TRIANGLE.replace(from, to).into_bytes();
     for (name, content, place) in [
-        (
-            "nan.obj",
-            TRIANGLE.replace("1 0 0", "1 nan 0").into_bytes(),
-            "line 2",
-        ),
-        (
-            "infinite.obj",
-            TRIANGLE.replace("0 1 0", "0 1e999 0").into_bytes(),
-            "line 3",
-        ),
-        (
-            "index.obj",
-            TRIANGLE.replace("f 1 2 3", "f 1 2 4").into_bytes(),
-            "line 4",
-        ),
+        ("nan.obj", triangle("1 0 0", "1 nan 0"), "line 2"),
+        ("infinite.obj", triangle("0 1 0", "0 1e999 0"), "line 3"),
+        ("index.obj", triangle("f 1 2 3", "f 1 2 4"), "line 4"),
         ("huge.ply", huge_ply.as_bytes().to_vec(), "4000000000"),
         ("huge.stl", huge_stl, "4294967295"),
         ("empty.obj", Vec::new(), "empty"),
@@ -133,10 +105,8 @@ fn a_damaged_file_is_named_with_the_place_of_the_damage() {
     ] {
         fs::write(dir.path().join(name), content).expect("writes");
         let said = expect(&dir, 3, &["simplify", name, "out.ply", "-t", "1"]);
-        assert!(
-            said.contains(name) && said.contains(place),
-            "{name}: {said}"
-        );
+        let named = said.contains(name) && said.contains(place);
+        assert!(named, "{name}: {said}");
         assert!(!dir.path().join("out.ply").exists());
     }
 }
@@ -144,25 +114,16 @@ fn a_damaged_file_is_named_with_the_place_of_the_damage() {
 #[test]
 fn coordinates_at_the_ends_of_the_range_are_simplified_like_others() {
     let dir = folder();
-    let triangles = |scale: &str| {
-        let text: String = generate::icosphere(1)
-            .positions()
-            .iter()
-            .map(|p| format!("v {:.6}{scale} {:.6}{scale} {:.6}{scale}\n", p.x, p.y, p.z))
-            .collect();
-        let faces = generate::icosphere(1)
-            .triangles()
-            .iter()
-            .map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1))
-            .collect::<String>();
-        text + &faces
-    };
+    let sphere = generate::icosphere(1);
+    let face = |t: &[u32; 3]| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    let faces: String = sphere.triangles().iter().map(face).collect();
     for scale in ["e37", "e-30", "e-40"] {
-        fs::write(dir.path().join("in.obj"), triangles(scale)).expect("writes");
+        let point =
+            |p: &DVec3| format!("v {:.6}{scale} {:.6}{scale} {:.6}{scale}\n", p.x, p.y, p.z);
+        let points: String = sphere.positions().iter().map(point).collect();
+        fs::write(dir.path().join("in.obj"), points + &faces).expect("writes");
         for method in ["memoryless", "quadric", "image"] {
-            let words = [
-                "simplify", "in.obj", "out.obj", "-t", "40", "--method", method,
-            ];
+            let words = format!("simplify in.obj out.obj -t 40 --method {method}");
             expect(&dir, 0, &words);
             let made = io::read(&dir.path().join("out.obj")).expect("reads").mesh;
             assert!(made.triangles().len() <= 40, "{scale} {method}");
@@ -175,15 +136,14 @@ fn a_file_that_is_not_there_ends_with_5_and_its_name() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(1));
     for words in [
-        &["simplify", "none.ply", "out.ply", "-t", "5"][..],
-        &["check", "none.ply"],
-        &["inspect", "none.ply"],
-        &["render", "none.ply", "d"],
-        &["compare", "none.ply", "in.ply"],
-        &["compare", "in.ply", "none.ply"],
+        "simplify none.ply out.ply -t 5",
+        "check none.ply",
+        "inspect none.ply",
+        "render none.ply d",
+        "compare none.ply in.ply",
+        "compare in.ply none.ply",
     ] {
-        let said = expect(&dir, 5, words);
-        assert!(said.contains("cannot read none.ply"), "{said}");
+        refused(&dir, 5, words, "cannot read none.ply");
     }
     assert_eq!(names(dir.path()), ["in.ply"]);
 }
@@ -201,18 +161,13 @@ fn a_target_above_the_input_copies_it() {
     let mesh = generate::torus(1.0, 0.4, 12, 8);
     put(&dir, "in.ply", &mesh);
     for method in ["image", "memoryless", "quadric"] {
-        let words = [
-            "simplify", "in.ply", "out.ply", "-t", "9999", "--method", method,
-        ];
+        let words = format!("simplify in.ply out.ply -t 9999 --method {method}");
         let said = expect(&dir, 0, &words);
         assert!(said.contains("copy"), "{said}");
         let made = io::read(&dir.path().join("out.ply")).expect("reads").mesh;
         let canonical = lodmark::mesh::canonical(&mesh).mesh;
-        assert_eq!(
-            content_sha256(&made),
-            content_sha256(&canonical),
-            "{method}"
-        );
+        let [made, canonical] = [&made, &canonical].map(content_sha256);
+        assert_eq!(made, canonical, "{method}");
     }
 }
 
@@ -220,21 +175,14 @@ fn a_target_above_the_input_copies_it() {
 fn a_target_out_of_reach_is_said_and_with_strict_refused() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(2));
-    let words = split("simplify in.ply out.ply -t 1 --method memoryless");
-    let said = expect(&dir, 0, &words);
+    let words = "simplify in.ply out.ply -t 1 --method memoryless";
+    let said = expect(&dir, 0, words);
     assert!(said.contains("no edge may be collapsed"), "{said}");
-    let before = fs::read(dir.path().join("out.ply")).expect("written");
-    let mut strict = words.to_vec();
-    strict.extend(["--strict", "--ratio", "0.9"]);
-    expect(&dir, 2, &strict);
-    strict.truncate(words.len());
-    strict.extend(["--strict", "--json", "report.json"]);
-    let said = expect(&dir, 6, &strict);
-    assert!(said.contains("nothing was written"), "{said}");
-    assert_eq!(
-        fs::read(dir.path().join("out.ply")).expect("still there"),
-        before
-    );
+    let before = bytes(&dir, "out.ply");
+    expect(&dir, 2, &format!("{words} --strict --ratio 0.9"));
+    let strict = format!("{words} --strict --json report.json");
+    refused(&dir, 6, &strict, "nothing was written");
+    assert_eq!(bytes(&dir, "out.ply"), before);
     assert_eq!(names(dir.path()), ["in.ply", "out.ply"]);
 }
 
@@ -242,16 +190,12 @@ fn a_target_out_of_reach_is_said_and_with_strict_refused() {
 fn results_go_to_stdout_and_talk_to_stderr() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(2));
-    let words = [
-        "simplify", "in.ply", "out.ply", "-t", "100", "--method", "quadric",
-    ];
-    let loud = lodmark(&dir, &words);
-    let quiet = lodmark(&dir, &[&words[..], &["--quiet"]].concat());
+    let words = "simplify in.ply out.ply -t 100 --method quadric";
+    let loud = lodmark(&dir, words);
+    let quiet = lodmark(&dir, &format!("{words} --quiet"));
     assert_eq!((code(&loud), code(&quiet)), (0, 0));
-    assert_eq!(
-        stdout(&loud),
-        "out.ply: 320 -> 100 triangles, 52 vertices\n"
-    );
+    let result = "out.ply: 320 -> 100 triangles, 52 vertices\n";
+    assert_eq!(stdout(&loud), result);
     assert_eq!(stdout(&quiet), stdout(&loud));
     assert!(stderr(&loud).contains("collapses"));
     assert_eq!(stderr(&quiet), "");
@@ -273,18 +217,12 @@ fn a_failure_to_write_leaves_nothing_behind() {
     let dir = folder();
     put(&dir, "in.ply", &generate::icosphere(1));
     fs::create_dir(dir.path().join("out.ply")).expect("a folder");
-    let missing = "missing/out.ply";
-    for out in ["out.ply", missing] {
-        let words = ["simplify", "in.ply", out, "-t", "40", "--method", "quadric"];
-        let said = expect(&dir, 5, &words);
-        assert!(said.contains(out), "{said}");
+    for out in ["out.ply", "missing/out.ply"] {
+        let words = format!("simplify in.ply {out} -t 40 --method quadric");
+        refused(&dir, 5, &words, out);
     }
-    let words = split("compare in.ply in.ply --size 8 --no-distance");
-    expect(
-        &dir,
-        5,
-        &[&words[..], &["--difference", "missing/d.png"]].concat(),
-    );
+    let words = "compare in.ply in.ply --size 8 --no-distance --difference missing/d.png";
+    expect(&dir, 5, words);
     assert_eq!(names(dir.path()), ["in.ply", "out.ply"]);
     assert!(names(&dir.path().join("out.ply")).is_empty());
 }
@@ -296,10 +234,7 @@ fn an_existing_output_is_replaced_in_one_step() {
     let out = dir.path().join("out.ply");
     fs::write(&out, b"what was there before").expect("writes");
     let mut open = fs::File::open(&out).expect("opens");
-    let words = [
-        "simplify", "in.ply", "out.ply", "-t", "40", "--method", "quadric",
-    ];
-    expect(&dir, 0, &words);
+    expect(&dir, 0, "simplify in.ply out.ply -t 40 --method quadric");
     // Who had the old file open still reads all of it: it was not written over.
     let mut old = String::new();
     std::io::Read::read_to_string(&mut open, &mut old).expect("reads");
@@ -315,30 +250,17 @@ fn no_number_of_threads_changes_a_byte_of_a_result() {
     for method in ["image", "memoryless", "quadric", "visibility"] {
         let mut all = Vec::new();
         for threads in ["1", "2", "3", "8"] {
-            let mut words = vec![
-                "simplify",
-                "in.ply",
-                "out.ply",
-                "-t",
-                "300",
-                "--method",
-                method,
-                "--threads",
-                threads,
-                "--json",
-                "report.json",
-                "--history",
-                "history.bin",
-            ];
-            if method == "image" {
-                words.extend(["--size", "64", "--start-triangles", "none"]);
-            }
-            if method == "visibility" {
-                words.extend(["--cameras", "18", "--visibility-size", "64"]);
-            }
+            let more = match method {
+                "image" => "--size 64 --start-triangles none",
+                "visibility" => "--cameras 18 --visibility-size 64",
+                _ => "",
+            };
+            let words = format!(
+                "simplify in.ply out.ply -t 300 --method {method} --threads {threads} --json report.json \
+                 --history history.bin {more}"
+            );
             expect(&dir, 0, &words);
-            let read = |name: &str| fs::read(dir.path().join(name)).expect("written");
-            all.push([read("out.ply"), read("report.json"), read("history.bin")]);
+            all.push(["out.ply", "report.json", "history.bin"].map(|name| bytes(&dir, name)));
         }
         assert!(all.iter().all(|files| *files == all[0]), "{method}");
     }
@@ -346,7 +268,7 @@ fn no_number_of_threads_changes_a_byte_of_a_result() {
 
 /// Presses the interrupt key once the command has said that it is at work.
 #[cfg(unix)]
-fn interrupt(dir: &TempDir, words: &[&str]) -> Output {
+fn interrupt(dir: &TempDir, words: &str) -> Output {
     use std::io::{BufRead, BufReader, Read};
     let mut child = command(dir, words)
         .stdout(std::process::Stdio::piped())
@@ -356,10 +278,8 @@ fn interrupt(dir: &TempDir, words: &[&str]) -> Output {
     let mut talk = BufReader::new(child.stderr.take().expect("piped"));
     let mut said = String::new();
     while !said.contains(" of ") {
-        assert!(
-            talk.read_line(&mut said).expect("text") > 0,
-            "ended early: {said}"
-        );
+        let length = talk.read_line(&mut said).expect("text");
+        assert!(length > 0, "ended early: {said}");
     }
     let kill = format!("kill -INT {}", child.id());
     let sent = Command::new("sh").args(["-c", &kill]).status();
@@ -374,27 +294,18 @@ fn interrupt(dir: &TempDir, words: &[&str]) -> Output {
 #[cfg(unix)]
 fn an_interrupted_run_ends_with_130_and_leaves_what_was_there() {
     let dir = folder();
-    put(
-        &dir,
-        "in.ply",
-        &generate::grid(96, 96, generate::Height::Waves),
-    );
+    let grid = generate::grid(96, 96, generate::Height::Waves);
+    put(&dir, "in.ply", &grid);
     fs::write(dir.path().join("out.ply"), b"before").expect("writes");
-    let simplify = split(
+    for words in [
         "simplify in.ply out.ply -t 10 --start-triangles none --json report.json --history h.bin",
-    );
-    let compare = split(
         "compare in.ply in.ply --size 1024 --samples 4 --json report.json --difference d.png",
-    );
-    for words in [&simplify[..], &compare] {
+    ] {
         let output = interrupt(&dir, words);
         assert_eq!(code(&output), 130, "{words:?} said {}", stderr(&output));
         assert!(stderr(&output).contains("nothing was written"));
         assert_eq!(stdout(&output), "");
         assert_eq!(names(dir.path()), ["in.ply", "out.ply"]);
-        assert_eq!(
-            fs::read(dir.path().join("out.ply")).expect("reads"),
-            b"before"
-        );
+        assert_eq!(bytes(&dir, "out.ply"), b"before");
     }
 }

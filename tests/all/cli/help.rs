@@ -2,7 +2,7 @@
 
 use lodmark::{bound::view_cell, view};
 
-use crate::support::{code, folder, lodmark, stdout};
+use crate::support::{code, folder, lodmark, split, stdout};
 
 /// The JSON objects in a text, wherever lines were broken.
 fn objects(text: &str) -> Vec<String> {
@@ -14,9 +14,8 @@ fn objects(text: &str) -> Vec<String> {
         let value: serde_json::Value = values.next()?.ok()?;
         Some(value.to_string())
     };
-    starts
-        .map(|at| whole(at).unwrap_or_else(|| panic!("no JSON: {}", &text[at..])))
-        .collect()
+    let object = |at| whole(at).unwrap_or_else(|| panic!("no JSON: {}", &text[at..]));
+    starts.map(object).collect()
 }
 
 #[test]
@@ -67,12 +66,8 @@ fn every_binary_file_is_named_with_what_writes_and_what_reads_it() {
         ("merge-visibility", &["visibility --partial"]),
         ("levels", &["visibility --partial"]),
     ] {
-        let output = lodmark(&dir, &[command, "--help"]);
-        let words: Vec<String> = stdout(&output)
-            .split_whitespace()
-            .map(String::from)
-            .collect();
-        let text = words.join(" ");
+        let text = stdout(&lodmark(&dir, &[command, "--help"]));
+        let text = split(&text).join(" ");
         for name in names {
             assert!(text.contains(name), "{command}: {name}");
         }
@@ -83,15 +78,9 @@ fn every_binary_file_is_named_with_what_writes_and_what_reads_it() {
 fn the_short_help_leaves_out_what_few_need_and_the_long_one_has_it() {
     let dir = folder();
     let [short, long] = ["-h", "--help"].map(|word| stdout(&lodmark(&dir, &["simplify", word])));
-    for option in [
-        "--engine",
-        "--evaluation",
-        "--measure-rank",
-        "--volume",
-        "--growing",
-        "--probabilistic",
-        "--keep-folds",
-    ] {
+    let rare =
+        "--engine --evaluation --measure-rank --volume --growing --probabilistic --keep-folds";
+    for option in split(rare) {
         assert!(!short.contains(option) && long.contains(option), "{option}");
     }
     assert!(short.contains("--triangles") && short.contains("--preset"));

@@ -29,8 +29,8 @@ fn histories_of_an_earlier_version_are_read_and_give_its_meshes() {
     for (bytes, last, middle) in written {
         fs::write(dir.path().join("old.history"), bytes).expect("writes");
         for (level, sha256) in [("40", last), ("80", middle)] {
-            let words = ["replay", "in.obj", "old.history", "o.obj", "-t", level];
-            expect(&dir, 0, &[&words[..], &["--json", "o.json"]].concat());
+            let words = format!("replay in.obj old.history o.obj -t {level} --json o.json");
+            expect(&dir, 0, &words);
             assert_eq!(json(&dir, "o.json")["content_sha256"], sha256, "{level}");
         }
     }

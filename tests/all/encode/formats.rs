@@ -9,7 +9,7 @@ use lodmark::{
         hash::plane_sha256,
         json, npy,
         png::{self, Picture},
-        sheet::{Style, Tile, sheet},
+        sheet::{PADDING, sheet},
     },
     metric::difference_strip,
     raster::Grid,
@@ -24,16 +24,9 @@ fn file_with(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-fn grey() -> impl Strategy<Value = Grid<u8>> {
+fn plane<T: Arbitrary + Copy>() -> impl Strategy<Value = Grid<T>> {
     (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
-        prop::collection::vec(any::<u8>(), (w * h) as usize)
-            .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
-    })
-}
-
-fn rgb() -> impl Strategy<Value = Grid<[u8; 3]>> {
-    (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
-        prop::collection::vec(any::<[u8; 3]>(), (w * h) as usize)
+        prop::collection::vec(any::<T>(), (w * h) as usize)
             .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
     })
 }
@@ -42,7 +35,7 @@ proptest! {
     #![proptest_config(crate::support::cases(40))]
 
     #[test]
-    fn a_picture_reads_back_as_it_was_written(grey in grey(), rgb in rgb()) {
+    fn a_picture_reads_back_as_it_was_written(grey in plane::<u8>(), rgb in plane::<[u8; 3]>()) {
         let folder = folder();
         let path = folder.path().join("a.png");
         png::write_grey(&path, &grey).expect("written");
@@ -55,7 +48,7 @@ proptest! {
 
     #[test]
     fn a_damaged_picture_is_an_error_and_never_a_panic(
-        rgb in rgb(),
+        rgb in plane::<[u8; 3]>(),
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..5),
         cut in any::<prop::sample::Index>(),
     ) {
@@ -77,12 +70,9 @@ proptest! {
 
     #[test]
     fn an_array_reads_back_as_it_was_written(
-        ids in (1_u32..20, 1_u32..20).prop_flat_map(|(w, h)| {
-            prop::collection::vec(any::<u32>(), (w * h) as usize)
-                .prop_map(move |v| Grid::new(w, h, v).expect("w * h values"))
-        }),
+        ids in plane::<u32>(),
         points in prop::collection::vec(prop::array::uniform3(-1e30_f32..1e30), 0..20),
-        levels in grey(),
+        levels in plane::<u8>(),
     ) {
         let folder = folder();
         let path = folder.path().join("a.npy");
@@ -103,7 +93,7 @@ proptest! {
 
     #[test]
     fn a_damaged_array_is_an_error_and_never_a_panic(
-        levels in grey(),
+        levels in plane::<u8>(),
         damage in prop::collection::vec((0_usize..140, any::<u8>()), 1..5),
         cut in 0_usize..160,
     ) {
@@ -127,7 +117,7 @@ proptest! {
 
     #[test]
     fn a_hash_changes_with_every_pixel_and_with_the_shape(
-        image in grey(),
+        image in plane::<u8>(),
         at in any::<prop::sample::Index>(),
         change in 1_u8..=255,
     ) {
@@ -145,11 +135,8 @@ proptest! {
 fn an_npy_file_has_the_bytes_that_numpy_writes() {
     let folder = folder();
     let path = folder.path().join("a.npy");
-    npy::write_plane(
-        &path,
-        &Grid::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values"),
-    )
-    .expect("written");
+    let ids = Grid::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values");
+    npy::write_plane(&path, &ids).expect("written");
     let bytes = fs::read(&path).expect("read");
     assert_eq!(bytes[..8], *b"\x93NUMPY\x01\x00");
     let header = String::from_utf8_lossy(&bytes[10..bytes.len() - 8]).into_owned();
@@ -180,15 +167,11 @@ fn an_array_that_claims_more_than_its_file_holds_is_refused() {
 fn a_hash_is_that_of_size_and_little_endian_values() {
     // sha256(struct.pack("<3I", w, h, bytes per pixel) + array bytes), computed with Python's hashlib.
     let ids = Grid::new(2, 1, vec![1_u32, 0x0102_0304]).expect("2 values");
-    assert_eq!(
-        plane_sha256(&ids),
-        "bf4cbcc651f9cd94a4ba55a93a0a7d424c0376388d75828feb9848d7596be6ec"
-    );
+    let known = "bf4cbcc651f9cd94a4ba55a93a0a7d424c0376388d75828feb9848d7596be6ec";
+    assert_eq!(plane_sha256(&ids), known);
     let colours = Grid::new(1, 2, vec![[1_u8, 2, 3], [4, 5, 6]]).expect("2 values");
-    assert_eq!(
-        plane_sha256(&colours),
-        "8ce1c03b80056fb6a460ee3e2fe4806a652245300e854ddbfc307c0e4e71b92e"
-    );
+    let known = "8ce1c03b80056fb6a460ee3e2fe4806a652245300e854ddbfc307c0e4e71b92e";
+    assert_eq!(plane_sha256(&colours), known);
 }
 
 #[test]
@@ -220,11 +203,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     for &byte in bytes {
         crc ^= u32::from(byte);
         for _ in 0..8 {
-            crc = if crc & 1 == 1 {
-                crc >> 1 ^ 0xedb8_8320
-            } else {
-                crc >> 1
-            };
+            crc = crc >> 1 ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 };
         }
     }
     !crc
@@ -264,16 +243,11 @@ fn a_report_has_one_form_and_no_infinities() {
     let path = folder.path().join("a.json");
     json::write(&path, &value).expect("written");
     assert_eq!(fs::read_to_string(&path).expect("read"), text);
-    let sorted = serde_json::json!({"b": 1, "a": 2});
-    assert_eq!(
-        json::to_text(&sorted).expect("JSON"),
-        "{\n  \"a\": 2,\n  \"b\": 1\n}\n"
-    );
+    let sorted = json::to_text(&serde_json::json!({"b": 1, "a": 2})).expect("JSON");
+    assert_eq!(sorted, "{\n  \"a\": 2,\n  \"b\": 1\n}\n");
     let keyless: BTreeMap<[u8; 2], u8> = [([1, 2], 3)].into();
-    assert_eq!(
-        json::to_text(&keyless).expect_err("no string").exit_code(),
-        70
-    );
+    let refused = json::to_text(&keyless).expect_err("no string");
+    assert_eq!(refused.exit_code(), 70);
 }
 
 #[test]
@@ -292,97 +266,58 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
 #[test]
 fn a_label_is_drawn_below_its_picture() {
     let picture = Grid::filled(30, 4, 50_u8);
-    let tiles = [
-        Tile {
-            picture: &picture,
-            label: "rms 1",
-        },
-        Tile {
-            picture: &picture,
-            label: "",
-        },
-    ];
-    let style = Style {
-        padding: 1,
-        dot: 1,
-        paper: 200,
-        ink: 0,
+    let drawn = sheet(&[(&picture, "rms 1"), (&picture, "")], 2, 1).expect("small");
+    let character = |level| match level {
+        0 => '#',
+        50 => 'o',
+        _ => ' ',
     };
-    let drawn = sheet(&tiles, 2, style).expect("small");
-    let rows: Vec<String> = (0..drawn.height())
-        .map(|y| {
-            (0..drawn.width())
-                .map(|x| match drawn.at(x, y) {
-                    0 => '#',
-                    50 => 'o',
-                    _ => ' ',
-                })
-                .collect::<String>()
-                .trim_end()
-                .to_string()
-        })
-        .collect();
-    let both = format!(" {} {}", "o".repeat(30), "o".repeat(30));
-    let mut expected = vec![
-        String::new(),
-        both.clone(),
-        both.clone(),
-        both.clone(),
-        both,
+    let line = |y| {
+        (0..drawn.width())
+            .map(|x| character(drawn.at(x, y)))
+            .collect::<String>()
+    };
+    let rows = (0..drawn.height()).map(|y| line(y).trim_end().to_string());
+    let rows: Vec<String> = rows.collect();
+    let both = format!(" {0} {0}", "o".repeat(30));
+    let expected = [
+        "",
+        &both,
+        &both,
+        &both,
+        &both,
+        "",
+        "",
+        "                           #",
+        "                          ##",
+        " # ##  ## #   ####         #",
+        " ##    # # # #             #",
+        " #     # # #  ###          #",
+        " #     # # #     #         #",
+        " #     # # # ####         ###",
+        "",
     ];
-    expected.extend([String::new(), String::new()]);
-    expected.extend(
-        [
-            "                           #",
-            "                          ##",
-            " # ##  ## #   ####         #",
-            " ##    # # # #             #",
-            " #     # # #  ###          #",
-            " #     # # #     #         #",
-            " #     # # # ####         ###",
-            "",
-        ]
-        .map(String::from),
-    );
     assert_eq!(rows, expected, "\n{}", rows.join("\n"));
 }
 
 #[test]
 fn a_long_label_is_cut_and_does_not_run_into_the_next_picture() {
     let picture = Grid::filled(20, 3, [9_u8; 3]);
-    let tile = |label| Tile {
-        picture: &picture,
-        label,
-    };
-    let long = sheet(&[tile("abcdefghij"), tile("x")], 2, Style::default()).expect("small");
-    let short = sheet(&[tile("abc"), tile("x")], 2, Style::default()).expect("small");
-    assert_eq!(long, short);
+    let labelled = |label| sheet(&[(&picture, label), (&picture, "x")], 2, PADDING).expect("small");
+    assert_eq!(labelled("abcdefghij"), labelled("abc"));
 }
 
 #[test]
 fn a_sheet_that_no_file_could_hold_is_refused() {
     let picture = Grid::filled(4096, 1, 0_u8);
-    let tiles = [Tile {
-        picture: &picture,
-        label: "",
-    }; 5];
-    assert_eq!(
-        sheet(&tiles, 5, Style::default())
-            .expect_err("too wide")
-            .exit_code(),
-        2
-    );
-    assert!(sheet(&tiles, u32::MAX, Style::default()).is_err());
-    assert!(sheet(&tiles, 2, Style::default()).is_ok());
-    assert!(sheet::<u8>(&[], 1, Style::default()).is_err());
-    assert!(sheet(&tiles, 0, Style::default()).is_err());
-    for dot in [0, u32::MAX] {
-        let style = Style {
-            dot,
-            ..Style::default()
-        };
-        assert!(sheet(&tiles[..1], 1, style).is_err());
-    }
+    let tiles = [(&picture, ""); 5];
+    let refused = sheet(&tiles, 5, PADDING).expect_err("too wide");
+    assert_eq!(refused.exit_code(), 2);
+    assert!(sheet(&tiles, u32::MAX, PADDING).is_err());
+    assert!(sheet(&tiles, 2, PADDING).is_ok());
+    assert!(sheet(&tiles[..0], 1, PADDING).is_err());
+    assert!(sheet(&tiles, 0, PADDING).is_err());
+    assert!(sheet(&tiles[..1], 1, u32::MAX).is_err());
 }
 
 #[test]

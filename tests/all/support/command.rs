@@ -51,7 +51,7 @@ impl<const N: usize> Arguments for [&str; N] {
 
 /// The words of a command line.
 pub(crate) fn split(words: &str) -> Vec<&str> {
-    words.split(' ').collect()
+    words.split_whitespace().collect()
 }
 
 /// Runs the command in a folder.
@@ -86,14 +86,32 @@ pub(crate) fn expect(folder: &TempDir, exit: i32, arguments: &(impl Arguments + 
     let said = stderr(&output);
     assert_eq!(code(&output), exit, "{:?} said {said}", arguments.list());
     if exit > 1 {
-        assert_eq!(
-            stdout(&output),
-            "",
-            "{:?}: a failure has no result",
-            arguments.list()
-        );
+        let words = arguments.list();
+        assert_eq!(stdout(&output), "", "{words:?}: a failure has no result");
     }
     said
+}
+
+/// Runs the command and holds it to an exit code and to a part of what it says on stderr.
+#[track_caller]
+pub(crate) fn refused(
+    folder: &TempDir,
+    exit: i32,
+    arguments: &(impl Arguments + ?Sized),
+    part: &str,
+) {
+    let said = expect(folder, exit, arguments);
+    assert!(said.contains(part), "{:?} said {said}", arguments.list());
+}
+
+/// The bytes of a file that was written into a folder.
+pub(crate) fn bytes(folder: &TempDir, name: &str) -> Vec<u8> {
+    fs::read(folder.path().join(name)).expect("written")
+}
+
+/// The text of a file that was written into a folder.
+pub(crate) fn text(folder: &TempDir, name: &str) -> String {
+    String::from_utf8(bytes(folder, name)).expect("text")
 }
 
 /// Writes a mesh into a folder.
@@ -105,6 +123,5 @@ pub(crate) fn put(folder: &TempDir, name: &str, mesh: &Mesh) -> PathBuf {
 
 /// A JSON file of a folder.
 pub(crate) fn json(folder: &TempDir, name: &str) -> serde_json::Value {
-    let text = fs::read_to_string(folder.path().join(name)).expect("written");
-    serde_json::from_str(&text).expect("JSON")
+    serde_json::from_slice(&bytes(folder, name)).expect("JSON")
 }

@@ -15,7 +15,7 @@ mod tables;
 mod threads;
 
 pub(crate) use command::{
-    code, command, expect, folder, json, lodmark, put, split, stderr, stdout,
+    bytes, code, command, expect, folder, json, lodmark, put, refused, split, stderr, stdout, text,
 };
 pub(crate) use folds::faults;
 pub(crate) use geometry::{
