@@ -138,7 +138,7 @@ fn tell(tally: &Tally, set: &ViewSet, cap: f64, verdict: Verdict) {
         let exact = tally.grid_exact_views;
         answer!("{exact} of the views need no rounding: there nothing may differ");
     }
-    for class in Class::ALL {
+    for class in Class::all() {
         let count = tally.of(class);
         if count > 0 || class <= Class::Degenerate {
             let kind = match class {

@@ -163,11 +163,10 @@ pub fn pictures<const N: usize>(
     shading: Interpolation,
 ) -> Result<[Grid<u8>; N]> {
     let count = views.views.len();
-    let view = views.views.get(view).ok_or_else(|| {
-        Error::Usage(format!(
-            "there is no view {view}; expected a number below {count}"
-        ))
-    })?;
+    let Some(view) = views.views.get(view) else {
+        let told = format!("there is no view {view}; expected a number below {count}");
+        return Err(Error::Usage(told));
+    };
     let view = with(view, shading);
     Ok(scenes.map(|scene| mean_luma(&luma_sums(scene, &view, views), views.samples)))
 }
@@ -181,11 +180,8 @@ fn with(view: &View, interpolation: Interpolation) -> View {
 /// Views that may be drawn at the same time. It decides memory and speed, never a result.
 fn at_a_time(reference: &Scene, candidates: &[Scene], views: &ViewSet) -> usize {
     let threads = parallel::threads();
-    let largest = std::iter::once(reference)
-        .chain(candidates)
-        .map(Scene::triangle_count)
-        .max()
-        .unwrap_or(0);
+    let scenes = std::iter::once(reference).chain(candidates);
+    let largest = scenes.map(Scene::triangle_count).max().unwrap_or(0);
     let parts = threads.min(largest / PART + 1) as u64;
     let samples = u64::from(views.width * views.samples) * u64::from(views.height * views.samples);
     let fitting = MEMORY / (parts * samples * SAMPLE_BYTES).max(1);

@@ -18,29 +18,19 @@ pub trait Pixel: Copy + PartialEq {
     fn channel(self, channel: usize) -> u32;
 }
 
-impl Pixel for u8 {
-    const CHANNELS: usize = 1;
+macro_rules! number {
+    ($($number:ty),*) => {$(
+        impl Pixel for $number {
+            const CHANNELS: usize = 1;
 
-    fn channel(self, _: usize) -> u32 {
-        u32::from(self)
-    }
+            fn channel(self, _: usize) -> u32 {
+                self.into()
+            }
+        }
+    )*};
 }
 
-impl Pixel for u16 {
-    const CHANNELS: usize = 1;
-
-    fn channel(self, _: usize) -> u32 {
-        u32::from(self)
-    }
-}
-
-impl Pixel for u32 {
-    const CHANNELS: usize = 1;
-
-    fn channel(self, _: usize) -> u32 {
-        self
-    }
-}
+number!(u8, u16, u32);
 
 impl Pixel for [u8; 3] {
     const CHANNELS: usize = 3;
@@ -171,10 +161,8 @@ pub fn compare<P: Pixel>(expected: &Grid<P>, actual: &Grid<P>) -> ImageCompariso
     let mut found: Option<PixelDifference> = None;
     let pairs = expected.values().iter().zip(actual.values());
     for (i, (&e, &a)) in pairs.enumerate().filter(|(_, (e, a))| e != a) {
-        let at = (
-            (i % expected.width() as usize) as u32,
-            (i / expected.width() as usize) as u32,
-        );
+        let width = expected.width() as usize;
+        let at = ((i % width) as u32, (i / width) as u32);
         let d = found.get_or_insert_with(|| PixelDifference {
             count: 0,
             pixels: expected.values().len() as u64,

@@ -79,10 +79,8 @@ impl FoldReference {
     /// True for a folded edge that is away from all folded edges of the reference.
     pub fn is_new(&self, [a, b]: [DVec3; 2]) -> bool {
         let middle = (a + b) * 0.5;
-        let near = self
-            .creases
-            .as_ref()
-            .map(|c| c.squared_distance(middle, 0).0);
+        let creases = self.creases.as_ref();
+        let near = creases.map(|c| c.squared_distance(middle, 0).0);
         near.is_none_or(|squared| squared > self.reach * self.reach)
     }
 
@@ -122,9 +120,8 @@ impl Orientation {
     /// can say so.
     pub fn agrees(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let centroid = ((a + b) + c) / 3.0;
-        let normal = area_normal([a, b, c]);
-        self.surface
-            .looks_along(centroid, normal, self.reach * self.reach)
+        let (normal, reach) = (area_normal([a, b, c]), self.reach);
+        self.surface.looks_along(centroid, normal, reach * reach)
     }
 
     /// True where all of the surface around a face looks the other way. Faces without area have no side.
@@ -143,9 +140,8 @@ impl Orientation {
 
 fn corners(mesh: &FramedMesh) -> impl Iterator<Item = [DVec3; 3]> {
     let positions = mesh.positions();
-    mesh.triangles()
-        .iter()
-        .map(|t| t.each(|v| positions[v as usize]))
+    let corners = |t: &[u32; 3]| t.each(|v| positions[v as usize]);
+    mesh.triangles().iter().map(corners)
 }
 
 /// The ends of the folded edges of a mesh.

@@ -95,10 +95,8 @@ pub fn squared_error<T: Copy + Into<u32>>(
     image: &Grid<T>,
     samples: u32,
 ) -> Result<SquaredError> {
-    same_size(
-        (reference.width(), reference.height()),
-        (image.width(), image.height()),
-    )?;
+    let size = |image: &Grid<T>| (image.width(), image.height());
+    same_size(size(reference), size(image))?;
     let (mut sum, mut largest) = (0_u64, 0_u32);
     for (&a, &b) in reference.values().iter().zip(image.values()) {
         let (a, b): (u32, u32) = (a.into(), b.into());
@@ -138,13 +136,11 @@ impl ViewErrors {
     /// [`Error::Usage`] without views; as [`SquaredError::combined`].
     pub fn new(views: Vec<SquaredError>) -> Result<Self> {
         let Some((&first, rest)) = views.split_first() else {
-            return Err(Error::Usage(
-                "no images to compare; expected at least one view".into(),
-            ));
+            let told = "no images to compare; expected at least one view";
+            return Err(Error::Usage(told.into()));
         };
-        let total = rest
-            .iter()
-            .try_fold(first, |sum, &view| sum.combined(view))?;
+        let mut rest = rest.iter();
+        let total = rest.try_fold(first, |sum, &view| sum.combined(view))?;
         Ok(Self { views, total })
     }
 
@@ -164,13 +160,9 @@ impl ViewErrors {
                 images.len()
             )));
         }
-        Self::new(
-            reference
-                .iter()
-                .zip(images)
-                .map(|(a, b)| squared_error(a, b, samples))
-                .collect::<Result<_>>()?,
-        )
+        let pairs = reference.iter().zip(images);
+        let errors = pairs.map(|(a, b)| squared_error(a, b, samples));
+        Self::new(errors.collect::<Result<_>>()?)
     }
 
     /// The error of every view, in order.

@@ -94,11 +94,8 @@ fn is_silhouette(mesh: &Mesh, [u, w]: [u32; 2], triangles: &[u32], facing: &[i8]
         let corners = mesh.triangles()[t as usize];
         let along = (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == w);
         // A triangle lies on the left of its own edges in the image where it faces the eye.
-        let side = if along {
-            facing[t as usize]
-        } else {
-            -facing[t as usize]
-        };
+        let facing = facing[t as usize];
+        let side = if along { facing } else { -facing };
         left |= side > 0;
         right |= side < 0;
     }

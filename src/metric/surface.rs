@@ -95,19 +95,15 @@ impl SurfaceDistance {
     /// Both ways: the larger of the two one-sided figures, each for itself, in file units.
     #[must_use]
     pub fn absolute(&self) -> Distances {
-        self.to_candidate
-            .absolute
-            .larger(self.to_reference.absolute)
+        let (there, back) = (self.to_candidate, self.to_reference);
+        there.absolute.larger(back.absolute)
     }
 
     /// Both ways as fractions of the reference's diagonal; `None` where that is 0.
     #[must_use]
     pub fn relative(&self) -> Option<Distances> {
-        Some(
-            self.to_candidate
-                .relative?
-                .larger(self.to_reference.relative?),
-        )
+        let (there, back) = (self.to_candidate, self.to_reference);
+        Some(there.relative?.larger(back.relative?))
     }
 }
 
@@ -127,9 +123,8 @@ pub fn surface_distance(
     progress: &dyn Progress,
 ) -> Result<SurfaceDistance> {
     if samples == 0 {
-        return Err(Error::Usage(
-            "0 samples measure no distance; expected at least 1".into(),
-        ));
+        let told = "0 samples measure no distance; expected at least 1";
+        return Err(Error::Usage(told.into()));
     }
     let (frame, diagonal) = frame_and_diagonal(reference)?;
     let reference = Surface::new(reference, frame, "reference")?;
@@ -151,10 +146,8 @@ pub fn surface_distance(
 }
 
 pub(super) fn empty(which: &str) -> Error {
-    Error::input(
-        "-",
-        format!("the {which} mesh has no triangles; expected at least one to measure distances to"),
-    )
+    let told = "mesh has no triangles; expected at least one to measure distances to";
+    Error::input("-", format!("the {which} {told}"))
 }
 
 /// The frame that a reference is measured in, and the diagonal of its box in that frame.
@@ -219,17 +212,16 @@ impl Sums {
     }
 
     fn plus(self, later: Self) -> Self {
-        let farther = later.largest > self.largest;
+        let far = if later.largest > self.largest {
+            later
+        } else {
+            self
+        };
         Self {
             weight: self.weight + later.weight,
             first: self.first + later.first,
             second: self.second + later.second,
-            largest: if farther { later.largest } else { self.largest },
-            farthest: if farther {
-                later.farthest
-            } else {
-                self.farthest
-            },
+            ..far
         }
     }
 }
@@ -241,11 +233,9 @@ impl Surface {
             used[v as usize] = true;
         }
         let positions: Vec<DVec3> = mesh.positions().iter().map(|&p| frame.enter(p)).collect();
-        let vertices: Vec<DVec3> = positions
-            .iter()
-            .zip(&used)
-            .filter_map(|(&p, &used)| used.then_some(p))
-            .collect();
+        let mut vertices = positions.clone();
+        let mut used = used.into_iter();
+        vertices.retain(|_| used.next() == Some(true));
         let reach = scale_by_power_of_two(1.0, REACH);
         // A coordinate that overflowed is infinite and fails as well.
         if let Some(p) = vertices.iter().find(|p| p.abs().max_element() > reach) {
@@ -255,11 +245,8 @@ impl Surface {
                 p.abs().max_element()
             )));
         }
-        let triangles: Vec<Triangle> = mesh
-            .triangles()
-            .iter()
-            .map(|t| Triangle::new(t.each(|v| positions[v as usize])))
-            .collect();
+        let triangle = |t: &[u32; 3]| Triangle::new(t.each(|v| positions[v as usize]));
+        let triangles: Vec<Triangle> = mesh.triangles().iter().map(triangle).collect();
         let tree = TriangleTree::of(triangles.clone()).ok_or_else(|| empty(which))?;
         Ok(Self {
             triangles,

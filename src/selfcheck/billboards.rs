@@ -12,20 +12,11 @@ use crate::{
 };
 
 pub(super) fn clouds(collector: &mut Collector) -> Result<()> {
-    let segment = [DVec3::new(-10.0, 0.0, 0.0), DVec3::new(10.0, 0.0, 0.0)];
-    let cases = [
-        (
-            "city",
-            part(&generate::city(), 600)?,
-            ViewCell::half_space(DVec3::new(0.0, -6.0, 0.0), DVec3::Y)?,
-        ),
-        (
-            "forest",
-            generate::trees(200, 80.0),
-            ViewCell::segment(segment)?,
-        ),
-    ];
-    for (name, mesh, cell) in cases {
+    let city = part(&generate::city(), 600)?;
+    let before = ViewCell::half_space(DVec3::new(0.0, -6.0, 0.0), DVec3::Y)?;
+    let forest = generate::trees(200, 80.0);
+    let inside = ViewCell::segment([-10.0, 10.0].map(|x| DVec3::new(x, 0.0, 0.0)))?;
+    for (name, mesh, cell) in [("city", city, before), ("forest", forest, inside)] {
         let options = BillboardOptions {
             directions: 30,
             texels: 96,

@@ -7,11 +7,7 @@ use super::{
 use crate::{
     Result, Silent,
     mesh::generate,
-    metric::{
-        luma::ViewErrors,
-        silhouette::silhouette_histogram,
-        surface::{OneSided, surface_distance},
-    },
+    metric::{luma::ViewErrors, silhouette::silhouette_histogram, surface::surface_distance},
     num::Each,
     raster::{Grid, Scene, luma_sums},
     view::{self, Interpolation, Projection, Shading, ViewsName, frame_of},
@@ -34,39 +30,29 @@ pub(super) fn compared(collector: &mut Collector) -> Result<()> {
     for (shading, set) in [("flat", &flat), ("gouraud", &gouraud)] {
         let set = set.enter_frame(frame);
         let [expected, actual] = scenes.each_ref().each(|scene| {
-            let views = set.views.iter();
-            views
-                .map(|v| luma_sums(scene, v, &set))
-                .collect::<Vec<Grid<u16>>>()
+            let drawn = set.views.iter().map(|v| luma_sums(scene, v, &set));
+            drawn.collect::<Vec<Grid<u16>>>()
         });
         let errors = ViewErrors::between(&expected, &actual, set.samples * set.samples)?;
         let sums = errors.views().iter().map(|e| e.sum.to_string());
         let sums = sums.collect::<Vec<_>>().join(" ");
         collector.text(&format!("luma/{shading}/views"), sums);
         let total = errors.total();
-        collector.text(
-            &format!("luma/{shading}/total"),
-            format!("{} {} {}", total.sum, total.pixels, total.samples),
-        );
+        let counts = format!("{} {} {}", total.sum, total.pixels, total.samples);
+        collector.text(&format!("luma/{shading}/total"), counts);
         let psnr = total.psnr().unwrap_or(f64::INFINITY);
-        collector.text(
-            &format!("luma/{shading}/rms-psnr-bits"),
-            bits([total.rms(), psnr]),
-        );
+        let name = format!("luma/{shading}/rms-psnr-bits");
+        collector.text(&name, bits([total.rms(), psnr]));
     }
     let distance = surface_distance(&reference, &candidate, 2_000, &Silent)?;
-    let one_sided = |d: &OneSided| {
-        let a = d.absolute;
-        format!("{} {}", d.samples, bits([a.mean, a.rms, a.max]))
-    };
-    collector.text(
-        "distance/to-candidate-bits",
-        one_sided(&distance.to_candidate),
-    );
-    collector.text(
-        "distance/to-reference-bits",
-        one_sided(&distance.to_reference),
-    );
+    for (to, found) in [
+        ("candidate", distance.to_candidate),
+        ("reference", distance.to_reference),
+    ] {
+        let a = found.absolute;
+        let text = format!("{} {}", found.samples, bits([a.mean, a.rms, a.max]));
+        collector.text(&format!("distance/to-{to}-bits"), text);
+    }
     let eyes: Vec<_> = flat.views.iter().map(|v| v.eye).collect();
     let histogram = silhouette_histogram(&candidate, &eyes, &Silent)?;
     let counts = histogram.counts().iter().map(u64::to_string);

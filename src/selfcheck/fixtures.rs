@@ -26,12 +26,10 @@ pub(super) fn colored(mesh: &Mesh) -> Mesh {
     }
     let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
         .expect("a row for every vertex");
+    let parts = mesh.clone().into_parts();
     Mesh::new(MeshParts {
-        positions: mesh.positions().to_vec(),
-        triangles: mesh.triangles().to_vec(),
         attributes,
-        precision: mesh.precision(),
-        ..MeshParts::default()
+        ..parts
     })
     .expect("the mesh was valid before")
 }
@@ -45,18 +43,13 @@ pub(super) fn terrain() -> Mesh {
 pub(super) fn two_materials() -> Mesh {
     let mesh = terrain();
     let half = |t: &[u32; 3]| u32::from(mesh.positions()[t[0] as usize].x >= 0.0);
-    Mesh::new(MeshParts {
-        positions: mesh.positions().to_vec(),
-        triangles: mesh.triangles().to_vec(),
-        materials: Materials {
-            names: vec!["left".into(), "right".into()],
-            of_triangle: mesh.triangles().iter().map(half).collect(),
-            ..Materials::default()
-        },
-        precision: mesh.precision(),
-        ..MeshParts::default()
-    })
-    .expect("the mesh was valid before")
+    let materials = Materials {
+        names: vec!["left".into(), "right".into()],
+        of_triangle: mesh.triangles().iter().map(half).collect(),
+        ..Materials::default()
+    };
+    let parts = mesh.into_parts();
+    Mesh::new(MeshParts { materials, ..parts }).expect("the mesh was valid before")
 }
 
 /// The mesh, how many collapses led to it, and the bits of its error. Not how many evaluations: that is effort.
@@ -74,11 +67,8 @@ pub(super) fn outcome_items(collector: &mut Collector, name: &str, outcome: &Out
 
 /// The bits of numbers in hexadecimal digits.
 pub(super) fn bits(numbers: impl IntoIterator<Item = f64>) -> String {
-    let words: Vec<String> = numbers
-        .into_iter()
-        .map(|x| format!("{:016x}", x.to_bits()))
-        .collect();
-    words.join(" ")
+    let words = numbers.into_iter().map(|x| format!("{:016x}", x.to_bits()));
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Records a picture of meshes side by side, a row for every way of culling, from view 17 of the evaluation around the first
@@ -99,14 +89,10 @@ pub(super) fn side_by_side(
         height: size,
         ..ViewSet::evaluation(&sphere_of(first.enter_frame(frame).in_frame_units())?)?
     };
-    let view = *views
-        .views
-        .get(17)
-        .ok_or_else(|| Error::Internal("24 views".into()))?;
-    let scenes: Vec<Scene> = meshes
-        .iter()
-        .map(|m| Scene::of(&m.enter_frame(frame)))
-        .collect();
+    let view = views.views.get(17).copied();
+    let view = view.ok_or_else(|| Error::Internal("24 views".into()))?;
+    let scenes = meshes.iter().map(|m| Scene::of(&m.enter_frame(frame)));
+    let scenes: Vec<Scene> = scenes.collect();
     let mut pictures = Vec::new();
     for &cull in culls {
         let view = View { cull, ..view };

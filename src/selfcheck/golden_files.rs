@@ -15,8 +15,13 @@ use crate::{
         hash::plane_sha256,
         json,
         png::{self, Picture},
+        sheet::Ink,
     },
-    metric::{difference::compare, difference_strip},
+    metric::{
+        difference::{ImageComparison, Levels, Pixel, compare},
+        difference_strip,
+    },
+    raster::Grid,
 };
 
 /// File name of the record.
@@ -38,21 +43,7 @@ pub fn picture_path(folder: &Path, name: &str) -> PathBuf {
 /// # Errors
 /// [`Error::Input`] for a damaged record; [`Error::Io`].
 pub fn check(folder: &Path, items: &[Item], out: &Path) -> Result<Vec<Mismatch>> {
-    check_recorded(folder, recorded(folder)?, items, out)
-}
-
-/// As [`check`], but only the goldens of some groups are asked for.
-///
-/// # Errors
-/// As [`check`].
-pub fn check_groups(
-    folder: &Path,
-    groups: &[&Group],
-    items: &[Item],
-    out: &Path,
-) -> Result<Vec<Mismatch>> {
-    let record = recorded(folder)?.of_groups(groups);
-    check_recorded(folder, record, items, out)
+    check_groups(folder, &[], items, out)
 }
 
 /// Reads the record of a folder; it is empty where there is none.
@@ -65,28 +56,36 @@ fn recorded(folder: &Path) -> Result<Record> {
     }
 }
 
-fn check_recorded(
+/// As [`check`], but only the goldens of these groups are asked for; all of them for no group.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_groups(
     folder: &Path,
-    record: Record,
+    groups: &[&Group],
     items: &[Item],
     out: &Path,
 ) -> Result<Vec<Mismatch>> {
+    let mut record = recorded(folder)?;
+    if !groups.is_empty() {
+        record = record.of_groups(groups);
+    }
     let mut mismatches = record.compare(items);
     let mut strips = Vec::new();
     for item in items {
         let Some(actual) = &item.picture else {
             continue;
         };
-        let path = picture_path(folder, &item.name);
-        let expected = match png::read(&path) {
+        let mismatch = |expected, pixels| Mismatch {
+            name: format!("{}.png", item.name),
+            expected,
+            actual: Some(pixels_sha256(actual)),
+            pixels,
+        };
+        let expected = match png::read(&picture_path(folder, &item.name)) {
             Ok(expected) => expected,
             Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
-                mismatches.push(Mismatch {
-                    name: format!("{}.png", item.name),
-                    expected: None,
-                    actual: Some(pixels_sha256(actual)),
-                    pixels: None,
-                });
+                mismatches.push(mismatch(None, None));
                 continue;
             }
             Err(e) => return Err(e),
@@ -97,17 +96,12 @@ fn check_recorded(
         let (pixels, strip) = difference(&expected, actual)?;
         match mismatches.iter_mut().find(|m| m.name == item.name) {
             Some(mismatch) => mismatch.pixels = Some(pixels),
-            None => mismatches.push(Mismatch {
-                name: format!("{}.png", item.name),
-                expected: Some(pixels_sha256(&expected)),
-                actual: Some(pixels_sha256(actual)),
-                pixels: Some(pixels),
-            }),
+            None => mismatches.push(mismatch(Some(pixels_sha256(&expected)), Some(pixels))),
         }
         strips.extend(strip.map(|strip| (picture_path(out, &item.name), strip)));
     }
     if !mismatches.is_empty() {
-        fs::create_dir_all(out).map_err(|e| Error::io("create", out, e))?;
+        atomic::folder(out)?;
         for (path, strip) in &strips {
             write(path, strip)?;
         }
@@ -122,7 +116,7 @@ fn check_recorded(
 /// # Errors
 /// [`Error::Io`].
 pub fn bless(folder: &Path, items: &[Item]) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+    atomic::folder(folder)?;
     for item in items {
         if let Some(picture) = &item.picture {
             let path = picture_path(folder, &item.name);
@@ -132,9 +126,7 @@ pub fn bless(folder: &Path, items: &[Item]) -> Result<()> {
         }
     }
     let text = Record::of(items).to_text();
-    atomic::write(&folder.join(RECORD_NAME), |file| {
-        file.write_all(text.as_bytes())
-    })
+    atomic::write_bytes(&folder.join(RECORD_NAME), text.as_bytes())
 }
 
 fn write(path: &Path, picture: &Picture) -> Result<()> {
@@ -153,22 +145,24 @@ fn pixels_sha256(picture: &Picture) -> String {
 
 /// Says how two pictures differ, and shows it where they have the same size.
 fn difference(expected: &Picture, actual: &Picture) -> Result<(String, Option<Picture>)> {
-    let size = |p: &Picture| match p {
-        Picture::Grey(plane) => (plane.width(), plane.height()),
-        Picture::Rgb(plane) => (plane.width(), plane.height()),
-    };
-    let same_size = size(expected) == size(actual);
     match (expected, actual) {
-        (Picture::Grey(e), Picture::Grey(a)) => {
-            let strip = same_size.then(|| difference_strip(e, a, SCALE));
-            let strip = strip.transpose()?.map(Picture::Grey);
-            Ok((compare(e, a).to_string(), strip))
-        }
+        (Picture::Grey(e), Picture::Grey(a)) => difference_of(e, a, Picture::Grey),
         _ => {
             let (e, a) = (expected.clone().into_rgb(), actual.clone().into_rgb());
-            let strip = same_size.then(|| difference_strip(&e, &a, SCALE));
-            let strip = strip.transpose()?.map(Picture::Rgb);
-            Ok((compare(&e, &a).to_string(), strip))
+            difference_of(&e, &a, Picture::Rgb)
         }
     }
+}
+
+fn difference_of<P: Pixel + Ink + Levels>(
+    expected: &Grid<P>,
+    actual: &Grid<P>,
+    picture: fn(Grid<P>) -> Picture,
+) -> Result<(String, Option<Picture>)> {
+    let found = compare(expected, actual);
+    let strip = match found {
+        ImageComparison::Sizes { .. } => None,
+        _ => Some(picture(difference_strip(expected, actual, SCALE)?)),
+    };
+    Ok((found.to_string(), strip))
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Collector,
-    fixtures::{bits, outcome_items, side_by_side},
+    fixtures::{bits, outcome_items, side_by_side, terrain},
 };
 use crate::{
     Result,
@@ -37,11 +37,7 @@ pub(super) fn hidden(collector: &mut Collector) -> Result<()> {
     for (name, mesh, triangles) in [
         ("encased", generate::encased(1), 200),
         ("shells", generate::shells(2, 2), 330),
-        (
-            "terrain",
-            generate::grid(12, 12, generate::Height::Polynomial),
-            100,
-        ),
+        ("terrain", terrain(), 100),
         ("textured-torus", generate::textured_torus(24, 12), 150),
         ("probe", generate::probe(), 150),
     ] {
@@ -80,11 +76,6 @@ fn interiors(collector: &mut Collector) -> Result<()> {
         outcome_items(collector, &name, &outcome);
         meshes.push(outcome.mesh);
     }
-    side_by_side(
-        collector,
-        "interior-views/luma",
-        &meshes,
-        &[Cull::None, Cull::Front],
-        150,
-    )
+    let culls = [Cull::None, Cull::Front];
+    side_by_side(collector, "interior-views/luma", &meshes, &culls, 150)
 }

@@ -11,7 +11,7 @@ use crate::{
     encode::png::Picture,
     mesh::{Mesh, generate},
     num::{Each, fixed::SubpixelBits},
-    raster::{self, Grid, Scene},
+    raster::{self, Scene},
     view::{
         self, Cull, Interpolation, Light, Projection, Shading, Specular, View, ViewSet, ViewsName,
         frame_of,
@@ -41,20 +41,19 @@ const GOURAUD: Shading = Shading {
     specular: None,
 };
 
-const fn specular(interpolation: Interpolation) -> Shading {
-    Shading {
-        interpolation,
-        two_sided: true,
-        specular: Some(Specular {
-            strength: 0.6,
-            exponent: 12,
-        }),
-    }
-}
+const SPECULAR: Shading = Shading {
+    interpolation: Interpolation::Flat,
+    two_sided: true,
+    specular: Some(Specular {
+        strength: 0.6,
+        exponent: 12,
+    }),
+};
 
 /// Ids, depth, coverage, luma and colours of every view of every case.
 pub(super) fn pictures(collector: &mut Collector) -> Result<()> {
-    for case in cases()? {
+    let cases = [probe_cases()?, torus_cases()?, placed_cases()?];
+    for case in cases.into_iter().flatten() {
         let frame = frame_of(&case.mesh);
         let set = case.set.enter_frame(frame);
         let scene = Scene::of(&case.mesh.enter_frame(frame));
@@ -98,8 +97,7 @@ fn crowd(collector: &mut Collector) -> Result<()> {
     let scene = Scene::of(&mesh.enter_frame(frame));
     let picture = raster::luma(&scene, &set.views[0], &set);
     collector.plane("crowd/ids", &raster::ids(&picture));
-    let depths: Grid<u32> = raster::depths(&picture);
-    collector.plane("crowd/depth", &depths);
+    collector.plane("crowd/depth", &raster::depths(&picture));
     collector.plane("crowd/luma", &picture.tones);
     Ok(())
 }
@@ -136,14 +134,6 @@ fn lit(mut set: ViewSet, light: Light, two_sided: bool) -> ViewSet {
         view.shading.two_sided = two_sided;
     }
     set
-}
-
-/// Every case, in the order of the groups below.
-fn cases() -> Result<Vec<Case>> {
-    let mut cases = probe_cases()?;
-    cases.extend(torus_cases()?);
-    cases.extend(placed_cases()?);
-    Ok(cases)
 }
 
 /// A mesh in views that depend on it.
@@ -199,26 +189,26 @@ fn probe_cases() -> Result<Vec<Case>> {
 /// Shadings, lights, colours and culling.
 fn torus_cases() -> Result<Vec<Case>> {
     let torus = || generate::torus(1.0, 0.4, 32, 16);
+    let colors = || colored(&torus());
     let engine = || generate::engine(1);
     Ok(vec![
         case("torus-gouraud", torus(), Show::Luma, &|m| {
             Ok(around(m, 2, 96)?.with_shading(GOURAUD))
         })?,
         case("torus-specular", torus(), Show::Nothing, &|m| {
-            Ok(around(m, 2, 96)?.with_shading(specular(Interpolation::Flat)))
+            Ok(around(m, 2, 96)?.with_shading(SPECULAR))
         })?,
         case("torus-gouraud-specular", torus(), Show::Luma, &|m| {
-            Ok(around(m, 2, 96)?.with_shading(specular(Interpolation::Gouraud)))
+            let interpolation = Interpolation::Gouraud;
+            Ok(around(m, 2, 96)?.with_shading(Shading {
+                interpolation,
+                ..SPECULAR
+            }))
         })?,
-        case("torus-colored", colored(&torus()), Show::Rgb, &|m| {
-            around(m, 2, 96)
+        case("torus-colored", colors(), Show::Rgb, &|m| around(m, 2, 96))?,
+        case("torus-colored-gouraud", colors(), Show::Nothing, &|m| {
+            around(m, 2, 64)?.with_shading(GOURAUD).with_samples(2)
         })?,
-        case(
-            "torus-colored-gouraud",
-            colored(&torus()),
-            Show::Nothing,
-            &|m| around(m, 2, 64)?.with_shading(GOURAUD).with_samples(2),
-        )?,
         case("torus-lit-from-a-point", torus(), Show::Nothing, &|m| {
             let lamp = Light::Point(DVec3::new(2.0, -1.0, 3.0));
             Ok(lit(around(m, 2, 96)?, lamp, false))
@@ -240,6 +230,10 @@ fn torus_cases() -> Result<Vec<Case>> {
 fn placed_cases() -> Result<Vec<Case>> {
     let probe = generate::probe;
     let engine = || generate::engine(1);
+    let (cube, waves) = (
+        generate::cube(),
+        generate::grid(24, 24, generate::Height::Waves),
+    );
     Ok(vec![
         // An eye inside the mesh: the near plane cuts triangles on all sides.
         case("engine-from-inside", engine(), Show::Luma, &|_| {
@@ -252,17 +246,11 @@ fn placed_cases() -> Result<Vec<Case>> {
         case("slivers-from-close-by", probe(), Show::Luma, &|_| {
             from_eye([0.98, -0.897, 0.41], [-1.2, -0.8, 0.4], [0.001, 4.0])
         })?,
-        case(
-            "cube-from-its-side",
-            generate::cube(),
-            Show::Nothing,
-            &|_| from_eye([1.000_01, 0.3, 0.2], [0.0, 0.9, 0.1], [1e-6, 4.0]),
-        )?,
-        case(
-            "waves-along-the-ground",
-            generate::grid(24, 24, generate::Height::Waves),
-            Show::Nothing,
-            &|_| from_eye([-0.9, 0.013, 0.06], [1.0, 0.02, 0.0], [0.01, 4.0]),
-        )?,
+        case("cube-from-its-side", cube, Show::Nothing, &|_| {
+            from_eye([1.000_01, 0.3, 0.2], [0.0, 0.9, 0.1], [1e-6, 4.0])
+        })?,
+        case("waves-along-the-ground", waves, Show::Nothing, &|_| {
+            from_eye([-0.9, 0.013, 0.06], [1.0, 0.02, 0.0], [0.01, 4.0])
+        })?,
     ])
 }

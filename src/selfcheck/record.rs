@@ -86,9 +86,11 @@ impl Record {
                 continue;
             }
             let number = i + 1;
-            let (name, value) = line
-                .split_once(' ')
-                .ok_or_else(|| wrong(format!("line {number} is `{line}`; expected NAME VALUE")))?;
+            let Some((name, value)) = line.split_once(' ') else {
+                return Err(wrong(format!(
+                    "line {number} is `{line}`; expected NAME VALUE"
+                )));
+            };
             if values.insert(name.to_string(), value.to_string()).is_some() {
                 return Err(wrong(format!("line {number} repeats `{name}`")));
             }
@@ -122,14 +124,10 @@ impl Record {
 
     /// The goldens whose names begin with `group/`.
     pub fn group(&self, group: &str) -> Self {
-        let own = |name: &str| {
-            name.strip_prefix(group)
-                .is_some_and(|rest| rest.starts_with('/'))
-        };
-        let values = self.values.iter().filter(|(name, _)| own(name));
-        Self {
-            values: values.map(|(n, v)| (n.clone(), v.clone())).collect(),
-        }
+        let mut values = self.values.clone();
+        let first = |name: &str| name.split_once('/').map(|(first, _)| first.to_string());
+        values.retain(|name, _| first(name).as_deref() == Some(group));
+        Self { values }
     }
 
     /// The goldens of some groups.

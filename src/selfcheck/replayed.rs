@@ -21,17 +21,11 @@ pub(super) fn replayed(collector: &mut Collector) -> Result<()> {
         ..ImageOptions::default()
     };
     let textured = generate::textured_torus(16, 8);
+    let by_images = Options::new(own, Target::Triangles(150));
+    let by_geometry = Options::memoryless(Target::Triangles(60));
     for (name, mesh, options) in [
-        (
-            "terrain/image",
-            terrain(),
-            Options::new(own, Target::Triangles(150)),
-        ),
-        (
-            "textured-torus/memoryless",
-            textured,
-            Options::memoryless(Target::Triangles(60)),
-        ),
+        ("terrain/image", terrain(), by_images),
+        ("textured-torus/memoryless", textured, by_geometry),
     ] {
         let outcome = simplify(&mesh, &options)?;
         let mut replay = Replay::new(&mesh, &outcome.history)?;

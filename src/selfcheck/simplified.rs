@@ -31,15 +31,12 @@ pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
 
 /// The methods that look at geometry alone.
 fn geometric(collector: &mut Collector) -> Result<()> {
+    let colors = colored(&generate::torus(1.0, 0.4, 16, 8));
     let cases = [
         ("cube", generate::cube(), 8),
         ("torus", generate::torus(1.0, 0.4, 24, 12), 120),
         ("textured-torus", generate::textured_torus(24, 12), 150),
-        (
-            "colored-torus",
-            colored(&generate::torus(1.0, 0.4, 16, 8)),
-            80,
-        ),
+        ("colored-torus", colors, 80),
         ("terrain", terrain(), 100),
         ("two-materials", two_materials(), 100),
         ("shells", generate::shells(2, 2), 120),
@@ -47,13 +44,11 @@ fn geometric(collector: &mut Collector) -> Result<()> {
     ];
     for (name, mesh, triangles) in &cases {
         let target = Target::Triangles(*triangles);
+        let probabilistic = Options::quadric(target).probabilistic();
         for (method, options) in [
             ("memoryless", Options::memoryless(target)),
             ("quadric", Options::quadric(target)),
-            (
-                "quadric-probabilistic",
-                Options::quadric(target).probabilistic(),
-            ),
+            ("quadric-probabilistic", probabilistic),
         ] {
             let outcome = simplify(mesh, &options)?;
             outcome_items(collector, &format!("{name}/{method}"), &outcome);
@@ -62,123 +57,78 @@ fn geometric(collector: &mut Collector) -> Result<()> {
     Ok(())
 }
 
-/// Options of the image method for small meshes: one driving set each that a case runs with.
-struct Recipes {
-    small: ImageOptions,
-    gouraud: ImageOptions,
-    interior: ImageOptions,
-    /// Every driving view of the published method, after memoryless pre-simplification.
-    published: ImageOptions,
-    /// The steps of the default preset in small: turned cameras too.
-    polished: ImageOptions,
-    mixed: ImageOptions,
-}
-
-impl Recipes {
-    fn new() -> Self {
-        let small = ImageOptions {
-            views: ViewsName::Octahedron(0),
-            size: 64.into(),
-            samples: 1,
-            start: Start::Input,
-            polish: Polish::default(),
-            // What pictures do is recorded, whatever geometry would do.
-            fall_back: false,
-            ..ImageOptions::default()
-        };
-        let gouraud = ImageOptions {
-            shading: DrivingShading::Gouraud,
-            ..small.clone()
-        };
-        let interior = ImageOptions {
-            interior_views: 2,
-            specular: Some(Specular {
-                strength: 0.4,
-                exponent: 8,
-            }),
-            ..small.clone()
-        };
-        let published = ImageOptions {
-            size: 64.into(),
-            start: Start::Triangles(180),
-            ..Preset::Paper.options()
-        };
-        let polished = ImageOptions {
-            views: ViewsName::Spiral(9),
-            size: 40.into(),
-            polish: Polish {
-                sweeps: 4,
-                flips_every: 1,
-                cameras_every: 2,
-                deviation_weight: 0.3,
-            },
-            fall_back: false,
-            ..Preset::Default.options()
-        };
-        let mixed = ImageOptions {
-            shading: DrivingShading::Mixed,
-            ..polished.clone()
-        };
-        Self {
-            small,
-            gouraud,
-            interior,
-            published,
-            polished,
-            mixed,
-        }
-    }
+/// Options of the image method for small meshes, a driving set each: flat, Gouraud and with interior views; every driving
+/// view of the published method, after memoryless pre-simplification; the steps of the default preset in small, turned
+/// cameras too, and with mixed shading.
+fn recipes() -> [ImageOptions; 6] {
+    let small = ImageOptions {
+        views: ViewsName::Octahedron(0),
+        size: 64.into(),
+        samples: 1,
+        start: Start::Input,
+        polish: Polish::default(),
+        // What pictures do is recorded, whatever geometry would do.
+        fall_back: false,
+        ..ImageOptions::default()
+    };
+    let gouraud = ImageOptions {
+        shading: DrivingShading::Gouraud,
+        ..small.clone()
+    };
+    let interior = ImageOptions {
+        interior_views: 2,
+        specular: Some(Specular {
+            strength: 0.4,
+            exponent: 8,
+        }),
+        ..small.clone()
+    };
+    let published = ImageOptions {
+        size: 64.into(),
+        start: Start::Triangles(180),
+        ..Preset::Paper.options()
+    };
+    let polished = ImageOptions {
+        views: ViewsName::Spiral(9),
+        size: 40.into(),
+        polish: Polish {
+            sweeps: 4,
+            flips_every: 1,
+            cameras_every: 2,
+            deviation_weight: 0.3,
+        },
+        fall_back: false,
+        ..Preset::Default.options()
+    };
+    let mixed = ImageOptions {
+        shading: DrivingShading::Mixed,
+        ..polished.clone()
+    };
+    [small, gouraud, interior, published, polished, mixed]
 }
 
 /// The image method.
 fn by_images(collector: &mut Collector) -> Result<()> {
-    let Recipes {
-        small,
-        gouraud,
-        interior,
-        published,
-        polished,
-        mixed,
-    } = Recipes::new();
+    let [small, gouraud, interior, published, polished, mixed] = recipes();
     let torus = || generate::torus(1.0, 0.4, 16, 8);
+    let textured = || generate::textured_torus(16, 8);
+    let (shells, sphere) = (generate::shells(2, 2), generate::icosphere(3));
     for (name, mesh, triangles, own) in [
         ("torus/image-flat", torus(), 90, &small),
         ("torus/image-gouraud", torus(), 90, &gouraud),
         ("cube/image-flat", generate::cube(), 8, &small),
-        (
-            "textured-torus/image-flat",
-            generate::textured_torus(16, 8),
-            120,
-            &small,
-        ),
+        ("textured-torus/image-flat", textured(), 120, &small),
         ("terrain/image-gouraud", terrain(), 120, &gouraud),
         ("two-materials/image-flat", two_materials(), 150, &small),
-        (
-            "shells/image-interior",
-            generate::shells(2, 2),
-            400,
-            &interior,
-        ),
+        ("shells/image-interior", shells, 400, &interior),
         ("probe/image-flat", generate::probe(), 300, &small),
-        (
-            "icosphere/image-published",
-            generate::icosphere(3),
-            120,
-            &published,
-        ),
+        ("icosphere/image-published", sphere, 120, &published),
         ("torus/image-polished", torus(), 90, &polished),
-        (
-            "textured-torus/image-polished",
-            generate::textured_torus(16, 8),
-            120,
-            &polished,
-        ),
+        ("textured-torus/image-polished", textured(), 120, &polished),
         ("terrain/image-polished-mixed", terrain(), 120, &mixed),
     ] {
-        let outcome = simplify(
-            &mesh,
-            &Options::new(own.clone(), Target::Triangles(triangles)),
-        )?;
+        let options = Options::new(own.clone(), Target::Triangles(triangles));
+        let outcome = simplify(&mesh, &options)?;
         outcome_items(collector, name, &outcome);
     }
     let limited = Options::new(small, Target::ErrorOnly).error_rms(4.0);
@@ -204,16 +154,13 @@ fn within_distance(collector: &mut Collector) -> Result<()> {
     let torus = generate::torus(1.0, 0.4, 24, 12);
     // Volumes are slow: on 144 triangles they took half of the time of all goldens.
     let few = generate::torus(1.0, 0.4, 10, 5);
+    let textured = generate::textured_torus(24, 12);
     for (name, mesh, own) in [
         ("torus/tolerance", &torus, within),
         ("torus/tolerance-one-sided", &few, one_sided),
         ("torus/tolerance-growing", &few, growing),
         ("terrain/tolerance", &terrain(), within),
-        (
-            "textured-torus/tolerance",
-            &generate::textured_torus(24, 12),
-            within,
-        ),
+        ("textured-torus/tolerance", &textured, within),
     ] {
         let options = Options::tolerance(own, Target::ErrorOnly);
         let outcome = simplify(mesh, &options)?;
@@ -251,11 +198,6 @@ fn readme_picture(collector: &mut Collector) -> Result<()> {
     let by_images = simplify(&mesh, &Options::new(driving, target))?.mesh;
     let by_geometry = simplify(&mesh, &Options::memoryless(target))?.mesh;
     let meshes = [mesh, by_images, by_geometry];
-    side_by_side(
-        collector,
-        "tori-side-by-side/luma",
-        &meshes,
-        &[Cull::None],
-        200,
-    )
+    let name = "tori-side-by-side/luma";
+    side_by_side(collector, name, &meshes, &[Cull::None], 200)
 }

@@ -25,16 +25,14 @@ fn at(x: f64, y: f64, z: f64) -> DVec3 {
 
 fn cells() -> Result<[(&'static str, ViewCell); 7]> {
     let (a, b, c) = (at(-0.5, 3.0, 0.25), at(1.5, 2.5, -0.5), at(0.25, 4.0, 1.0));
+    let corners = [a, b, c, at(0.0, 3.5, -2.0), at(0.25, 3.25, 0.0)];
     Ok([
         ("point", ViewCell::point(a)?),
         ("segment", ViewCell::segment([a, b])?),
         ("line", ViewCell::line(a, b - a)?),
         ("polygon", ViewCell::polygon(&[a, b, c])?),
         ("plane", ViewCell::plane(a, at(0.1, 1.0, 0.2))?),
-        (
-            "polyhedron",
-            ViewCell::polyhedron(&[a, b, c, at(0.0, 3.5, -2.0), at(0.25, 3.25, 0.0)])?,
-        ),
+        ("polyhedron", ViewCell::polyhedron(&corners)?),
         ("half-space", ViewCell::half_space(a, at(0.1, -1.0, 0.2))?),
     ])
 }
@@ -68,14 +66,9 @@ pub(super) fn bounds(collector: &mut Collector) -> Result<()> {
         let found = measure(originals(&fine), &nearest, what, effort, &Silent)?;
         let worst = found.worst.map_or(0.0, |w| w.value);
         let claims = heuristics::claims(&fine, &coarse, &nearest, &cell);
-        collector.text(
-            &format!("{name}/surface-bits"),
-            format!(
-                "{} {}",
-                bits([found.bound, worst, claims.vertices, claims.edges]),
-                found.pieces
-            ),
-        );
+        let numbers = bits([found.bound, worst, claims.vertices, claims.edges]);
+        let text = format!("{numbers} {}", found.pieces);
+        collector.text(&format!("{name}/surface-bits"), text);
         let shell = region::shell(&cell, at(0.1, 0.2, 0.3), aperture, 2, Some(2.0))?;
         collector.mesh(&format!("{name}/region"), &shell);
     }

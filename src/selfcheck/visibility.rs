@@ -3,7 +3,7 @@
 
 use super::{
     Collector,
-    fixtures::{bits, sphere_of},
+    fixtures::{bits, sphere_of, terrain},
 };
 use crate::{
     Result, Silent,
@@ -23,39 +23,20 @@ pub(super) fn measured(collector: &mut Collector) -> Result<()> {
         size: 72,
         ..MeasureOptions::default()
     };
+    let (mut paper, mut fractional, mut two_sided) = (MeasureOptions::paper(), small, small);
+    (paper.octahedron, paper.size) = (small.octahedron, small.size);
+    fractional.fractional = true;
+    (two_sided.two_sided, two_sided.edge_limit) = (true, None);
     let rules = [
         ("default", small),
-        (
-            "paper",
-            MeasureOptions {
-                octahedron: 1,
-                size: 72,
-                ..MeasureOptions::paper()
-            },
-        ),
-        (
-            "fractional",
-            MeasureOptions {
-                fractional: true,
-                ..small
-            },
-        ),
-        (
-            "two-sided",
-            MeasureOptions {
-                two_sided: true,
-                edge_limit: None,
-                ..small
-            },
-        ),
+        ("paper", paper),
+        ("fractional", fractional),
+        ("two-sided", two_sided),
     ];
     for (name, mesh) in [
         ("tori", generate::interlocking_tori(24, 12)),
         ("shells", generate::shells(3, 2)),
-        (
-            "terrain",
-            generate::grid(12, 12, generate::Height::Polynomial),
-        ),
+        ("terrain", terrain()),
         ("probe", generate::probe()),
         // Most triangles are smaller than a pixel.
         ("fine-torus", generate::torus(1.0, 0.4, 160, 80)),
@@ -74,29 +55,27 @@ pub(super) fn measured(collector: &mut Collector) -> Result<()> {
     let (survey, table) = PartialVisibility::with_table(&mesh, &small, &Silent)?;
     collector.plane("tori/table", table.packed());
     numbers(collector, "tori/survey", &survey.finish(&mesh)?);
-    let steps = visibility::convergence(
-        &generate::interlocking_tori(8, 5),
-        &MeasureOptions { size: 16, ..small },
-        &Silent,
-    )?;
+    let (few, tiny) = (
+        generate::interlocking_tori(8, 5),
+        MeasureOptions { size: 16, ..small },
+    );
+    let steps = visibility::convergence(&few, &tiny, &Silent)?;
     let errors = steps.iter().flat_map(|s| [s.error, s.mesh]);
     collector.text("convergence", bits(errors));
     pictured(collector, &mesh, &survey.finish(&mesh)?)
 }
 
 fn numbers(collector: &mut Collector, name: &str, found: &Visibility) {
-    let bytes: Vec<u8> = found
+    let shares = found
         .triangles()
         .iter()
-        .flat_map(|v| v.to_bits().to_le_bytes())
-        .chain(found.views().iter().flat_map(|n| n.to_le_bytes()))
-        .collect();
+        .flat_map(|v| v.to_bits().to_le_bytes());
+    let views = found.views().iter().flat_map(|n| n.to_le_bytes());
+    let bytes: Vec<u8> = shares.chain(views).collect();
     collector.bytes(&format!("{name}/triangles"), &bytes);
     let shares = bits([found.mesh(), found.never_seen_area()]);
-    collector.text(
-        &format!("{name}/mesh"),
-        format!("{shares} {}", found.never_seen()),
-    );
+    let text = format!("{shares} {}", found.never_seen());
+    collector.text(&format!("{name}/mesh"), text);
 }
 
 /// The mesh in the colours of its visibility.

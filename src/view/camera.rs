@@ -176,9 +176,8 @@ impl ViewSet {
     pub fn with_interior_views(mut self, count: usize) -> Result<Self> {
         let total = self.views.len();
         if count > total {
-            return Err(Error::Usage(format!(
-                "{count} interior views of {total}; expected at most {total}"
-            )));
+            let told = format!("{count} interior views of {total}; expected at most {total}");
+            return Err(Error::Usage(told));
         }
         for (i, view) in self.views.iter_mut().enumerate() {
             if (i + 1) * count / total > i * count / total {

@@ -158,9 +158,8 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
     };
     let schema = json::schema_of(text).map_err(malformed)?;
     if schema != SCHEMA {
-        return Err(refused(format!(
-            "schema {schema}; this version reads schema {SCHEMA}"
-        )));
+        let told = format!("schema {schema}; this version reads schema {SCHEMA}");
+        return Err(refused(told));
     }
     let record: SetRecord = serde_json::from_str(text).map_err(malformed)?;
     for (field, found, expected) in [
@@ -168,9 +167,8 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
         ("depth", &record.depth, DEPTH),
     ] {
         if found != expected {
-            return Err(refused(format!(
-                "{field} is `{found}`; expected `{expected}`"
-            )));
+            let told = format!("{field} is `{found}`; expected `{expected}`");
+            return Err(refused(told));
         }
     }
     if record.views.is_empty() {
@@ -186,10 +184,9 @@ pub fn from_json(text: &str, path: impl AsRef<Path>) -> Result<ViewSet> {
     };
     set.check_size().map_err(|e| refused(e.to_string()))?;
     for (i, view) in record.views.iter().enumerate() {
-        let view = view
-            .check()
-            .map_err(|what| refused(format!("view {i}: {what}")))?;
-        set.views.push(view);
+        let view = view.check();
+        set.views
+            .push(view.map_err(|what| refused(format!("view {i}: {what}")))?);
     }
     Ok(set)
 }
@@ -224,9 +221,8 @@ impl ViewRecord {
             let same =
                 |(a, b): (&Option<f32>, &Option<f32>)| a.map(f32::to_bits) == b.map(f32::to_bits);
             if given.len() != 16 || !given.iter().zip(&expected).all(same) {
-                return Err(
-                    "matrix_f32 is not the rounding of matrix; leave it out or round it".into(),
-                );
+                let told = "matrix_f32 is not the rounding of matrix; leave it out or round it";
+                return Err(told.into());
             }
         }
         if matrix[3].iter().all(|m| m.abs() <= 0.0) {
@@ -268,11 +264,9 @@ impl ViewRecord {
     }
 
     fn parse_matrix(&self) -> Result<Matrix, String> {
-        if self.matrix.len() != 16 {
-            return Err(format!(
-                "matrix has {} entries; expected 16",
-                self.matrix.len()
-            ));
+        let count = self.matrix.len();
+        if count != 16 {
+            return Err(format!("matrix has {count} entries; expected 16"));
         }
         let mut matrix = [[0.0; 4]; 4];
         for (i, text) in self.matrix.iter().enumerate() {
@@ -296,22 +290,14 @@ impl ViewRecord {
 }
 
 fn finite(v: [f64; 3], what: &str) -> Result<DVec3, String> {
-    let v = DVec3::from_array(v);
-    if v.is_finite() {
-        Ok(v)
-    } else {
-        Err(format!("{what} is not finite"))
-    }
+    let v = Some(DVec3::from_array(v)).filter(|v| v.is_finite());
+    v.ok_or_else(|| format!("{what} is not finite"))
 }
 
 fn unit(v: [f64; 3], what: &str) -> Result<DVec3, String> {
     let v = finite(v, what)?;
     let length = math::length(v);
-    if (length - 1.0).abs() <= UNIT_TOLERANCE {
-        Ok(v)
-    } else {
-        Err(format!(
-            "{what} has length {length}; expected a unit vector"
-        ))
-    }
+    let near = (length - 1.0).abs() <= UNIT_TOLERANCE;
+    let told = || format!("{what} has length {length}; expected a unit vector");
+    near.then_some(v).ok_or_else(told)
 }

@@ -223,11 +223,8 @@ impl View {
 
 /// The up-vector of view `index` of `count` along the unit vector `back`, by the rule in the file's first lines.
 fn rolled_up(back: DVec3, index: usize, count: usize) -> Option<DVec3> {
-    let reference = if back.y.abs() > STEEP {
-        DVec3::Z
-    } else {
-        DVec3::Y
-    };
+    let steep = back.y.abs() > STEEP;
+    let reference = if steep { DVec3::Z } else { DVec3::Y };
     let Basis { right, up, .. } = Basis::new(back, reference)?;
     let angle = std::f64::consts::TAU * (index as f64 / count as f64);
     // Counter-clockwise for the viewer: from up towards the left.

@@ -13,7 +13,7 @@ use super::{Projection, Sphere, View, ViewSet, file};
 use crate::{
     Error, Result,
     mesh::generate::subdivision,
-    num::{fixed::SubpixelBits, math},
+    num::{Each, fixed::SubpixelBits, math},
 };
 
 /// The 50 % grey behind every model (Lindstrom & Turk 2000, section 3.2).
@@ -89,12 +89,8 @@ pub fn turned(directions: &[DVec3], round: u32) -> Vec<DVec3> {
     if round == 0 {
         return directions.to_vec();
     }
-    let (a, b) = (
-        GOLDEN_ANGLE * f64::from(round),
-        SILVER_ANGLE * f64::from(round),
-    );
-    let ((sin_a, cos_a), (sin_b, cos_b)) =
-        ((math::sin(a), math::cos(a)), (math::sin(b), math::cos(b)));
+    let [a, b] = [GOLDEN_ANGLE, SILVER_ANGLE].each(|angle| angle * f64::from(round));
+    let [(sin_a, cos_a), (sin_b, cos_b)] = [a, b].each(|x| (math::sin(x), math::cos(x)));
     let turn = |d: &DVec3| {
         let (x, y) = (cos_a * d.x - sin_a * d.y, sin_a * d.x + cos_a * d.y);
         DVec3::new(x, cos_b * y - sin_b * d.z, sin_b * y + cos_b * d.z)
@@ -112,24 +108,12 @@ pub fn octahedron(k: u32) -> Vec<DVec3> {
 /// [`octahedron`] with its 8 * 4^k triangles, counter-clockwise seen from outside: what the share of the sphere that
 /// a direction stands for is computed from.
 pub fn octahedron_faces(k: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let mut vertices = vec![
-        DVec3::X,
-        DVec3::NEG_X,
-        DVec3::Y,
-        DVec3::NEG_Y,
-        DVec3::Z,
-        DVec3::NEG_Z,
-    ];
-    let mut triangles = vec![
-        [0, 2, 4],
-        [2, 1, 4],
-        [1, 3, 4],
-        [3, 0, 4],
-        [2, 0, 5],
-        [1, 2, 5],
-        [3, 1, 5],
-        [0, 3, 5],
-    ];
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let nx = DVec3::NEG_X;
+    let mut vertices = vec![x, nx, y, DVec3::NEG_Y, z, DVec3::NEG_Z];
+    let upper = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
+    let lower = [[2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let mut triangles = [upper, lower].concat();
     for _ in 0..k.min(OCTAHEDRON_LIMIT) {
         subdivision::split(&mut vertices, &mut triangles);
     }
@@ -151,11 +135,9 @@ impl ViewSet {
         projection: Projection,
     ) -> Result<Self> {
         let count = directions.len();
-        let views: Option<Vec<View>> = directions
-            .iter()
-            .enumerate()
-            .map(|(i, &d)| View::around(sphere, d, [i, count], [width, height], projection))
-            .collect();
+        let size = [width, height];
+        let view = |(i, &d)| View::around(sphere, d, [i, count], size, projection);
+        let views: Option<Vec<View>> = directions.iter().enumerate().map(view).collect();
         let views = views.filter(|views| !views.is_empty()).ok_or_else(|| {
             Error::Usage(format!(
                 "no views of {width} x {height} pixels from {count} directions onto a sphere of radius {:e} around \
@@ -189,14 +171,8 @@ impl ViewSet {
     /// # Errors
     /// As [`ViewSet::costs`].
     pub fn evaluation(sphere: &Sphere) -> Result<Self> {
-        Self::around(
-            sphere,
-            &rhombicuboctahedron(),
-            512,
-            512,
-            Projection::Perspective,
-        )?
-        .with_samples(2)
+        let directions = rhombicuboctahedron();
+        Self::around(sphere, &directions, 512, 512, Projection::Perspective)?.with_samples(2)
     }
 }
 
@@ -292,12 +268,9 @@ pub fn resolve(
 ) -> Result<ViewSet> {
     match name {
         ViewsName::File(path) => file::read(path),
-        named => ViewSet::around(
-            sphere,
-            &named.directions().unwrap_or_default(),
-            width,
-            height,
-            projection,
-        ),
+        named => {
+            let directions = named.directions().unwrap_or_default();
+            ViewSet::around(sphere, &directions, width, height, projection)
+        }
     }
 }

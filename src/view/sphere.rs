@@ -90,38 +90,28 @@ fn referenced(mesh: &Mesh) -> Vec<DVec3> {
     for &v in mesh.triangles().iter().flatten() {
         used[v as usize] = true;
     }
-    mesh.positions()
-        .iter()
-        .zip(used)
-        .filter_map(|(&p, used)| used.then_some(p))
-        .collect()
+    let points = mesh.positions().iter().zip(used);
+    points.filter_map(|(&p, used)| used.then_some(p)).collect()
 }
 
 /// The minimum sphere in a frame in which the extent of the points is about 1, and that frame.
 fn solve_scaled(points: &[DVec3]) -> Option<(Frame, Sphere)> {
     let &first = points.first()?;
-    let (low, high) = points
-        .iter()
-        .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
+    let wider = |(low, high): (DVec3, DVec3), &p: &DVec3| (low.min(p), high.max(p));
+    let (low, high) = points.iter().fold((first, first), wider);
     // Half the extent cannot overflow; the whole one cannot vanish among subnormal numbers.
     let half = (high * 0.5 - low * 0.5).max_element();
-    let frame = if half > 0.0 {
-        Frame::for_size(half)
-    } else {
-        Frame::for_size((high - low).max_element())
-    };
+    let whole = (high - low).max_element();
+    let frame = Frame::for_size(if half > 0.0 { half } else { whole });
+    // + 0: one zero, no -0.
     let scaled: Vec<DVec3> = if frame.exponent == 0 {
         points.iter().map(|&p| p + DVec3::ZERO).collect()
     } else {
-        points
-            .iter()
-            .map(|&p| frame.enter(p) + DVec3::ZERO)
-            .collect() // + 0: one zero, no -0
+        let enter = |&p| frame.enter(p) + DVec3::ZERO;
+        points.iter().map(enter).collect()
     };
-    Some((
-        frame,
-        solve(&scaled, frame.enter(low * 0.5) + frame.enter(high * 0.5)),
-    ))
+    let start = frame.enter(low * 0.5) + frame.enter(high * 0.5);
+    Some((frame, solve(&scaled, start)))
 }
 
 /// The minimum sphere of points with an extent near 1; `start` is any point that depends on their set alone.
@@ -198,13 +188,8 @@ fn smallest(points: &mut Vec<DVec3>) -> Smallest {
                 continue;
             }
             chosen.clear();
-            chosen.extend((0..points.len()).filter_map(|i| {
-                if subset >> i & 1 == 1 {
-                    Some(points[i])
-                } else {
-                    None
-                }
-            }));
+            let members = (0..points.len()).filter(|i| subset >> i & 1 == 1);
+            chosen.extend(members.map(|i| points[i]));
             let Some(center) = circumcenter(&chosen) else {
                 continue;
             };

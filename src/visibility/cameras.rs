@@ -46,14 +46,9 @@ impl Cameras {
             CameraWeights::Equal => vec![1.0; towards.len()],
             CameraWeights::Area => area_weights(options.octahedron),
         };
-        let set = ViewSet::around(
-            sphere,
-            &towards,
-            options.size,
-            options.size,
-            Projection::Orthographic,
-        )?
-        .with_subpixel(options.subpixel_bits);
+        let (size, projection) = (options.size, Projection::Orthographic);
+        let set = ViewSet::around(sphere, &towards, size, size, projection)?;
+        let set = set.with_subpixel(options.subpixel_bits);
         if set.views.len() != towards.len() {
             return Err(Error::Internal("a camera without a view".into()));
         }

@@ -6,15 +6,9 @@ pub fn color(visibility: f64) -> [u8; 3] {
     let scaled = 3.0 * visibility.clamp(0.0, 1.0);
     let level = |x: f64| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     let beyond = |third: f64| scaled - third;
-    [
-        level(1.0 - beyond(2.0)),
-        if scaled < 1.0 {
-            level(1.0 - scaled)
-        } else {
-            level(beyond(1.0))
-        },
-        level(1.0 - scaled),
-    ]
+    let white = 1.0 - scaled;
+    let green = if scaled < 1.0 { white } else { beyond(1.0) };
+    [1.0 - beyond(2.0), green, white].map(level)
 }
 
 #[cfg(test)]

@@ -32,22 +32,19 @@ pub fn convergence(
     progress: &dyn Progress,
 ) -> Result<Vec<ConvergenceStep>> {
     let with = |octahedron: u32| {
-        let options = MeasureOptions {
-            octahedron,
-            ..*options
-        };
+        let mut options = *options;
+        options.octahedron = octahedron;
         measure(mesh, &options, progress)
     };
     let truth = with(OCTAHEDRON_LIMIT)?;
     let frame = frame_of(mesh);
     let area = |t: usize| double_area(mesh.corners(t).each(|p| frame.enter(p)));
     let areas: Vec<f64> = (0..mesh.triangles().len()).map(area).collect();
-    let mut steps = Vec::new();
-    for octahedron in 0..OCTAHEDRON_LIMIT {
-        steps.push(step(&with(octahedron)?, &truth, &areas));
-    }
-    steps.push(step(&truth, &truth, &areas));
-    Ok(steps)
+    let coarser = (0..OCTAHEDRON_LIMIT).map(with);
+    let found = coarser.chain([Ok(truth.clone())]);
+    found
+        .map(|found| Ok(step(&found?, &truth, &areas)))
+        .collect()
 }
 
 fn step(found: &Visibility, truth: &Visibility, areas: &[f64]) -> ConvergenceStep {

@@ -85,20 +85,18 @@ pub(super) fn count(
         .enter_frame(frame);
     let cameras = Cameras::new(options, &sphere)?;
     let positions = mesh.positions().iter().map(|&p| frame.enter(p)).collect();
+    let pixel = 2.0 * sphere.radius / f64::from(options.size);
+    // A mesh that is one point has no size to compare with.
     let limit = options
         .edge_limit
-        .map(|pixels| pixels * (2.0 * sphere.radius / f64::from(options.size)));
-    // A mesh that is one point has no size to compare with.
-    let limit = limit.filter(|&l| l > 0.0);
+        .map(|pixels| pixels * pixel)
+        .filter(|&l| l > 0.0);
     let pieces = Pieces::new(positions, mesh.triangles(), limit)?;
-    let normals: Vec<DVec3> = mesh
-        .triangles()
-        .iter()
-        .map(|t| {
-            let corners = t.each(|v| pieces.scene.positions()[v as usize]);
-            math::unit(area_normal(corners)).unwrap_or(DVec3::ZERO)
-        })
-        .collect();
+    let normal = |t: &[u32; 3]| {
+        let corners = t.each(|v| pieces.scene.positions()[v as usize]);
+        math::unit(area_normal(corners)).unwrap_or(DVec3::ZERO)
+    };
+    let normals: Vec<DVec3> = mesh.triangles().iter().map(normal).collect();
     let mut counts = Counts {
         views: vec![0; faces],
         front: vec![Weights::default(); faces],
@@ -139,14 +137,10 @@ impl Counts {
         for (sum, add) in self.views.iter_mut().zip(&other.views) {
             *sum += add;
         }
-        for (sums, adds) in [
-            (&mut self.front, &other.front),
-            (&mut self.back, &other.back),
-        ] {
-            for (sum, add) in sums.iter_mut().zip(adds) {
-                sum.seen += add.seen;
-                sum.all += add.all;
-            }
+        let front = self.front.iter_mut().zip(&other.front);
+        for (sum, add) in front.chain(self.back.iter_mut().zip(&other.back)) {
+            sum.seen += add.seen;
+            sum.all += add.all;
         }
     }
 

@@ -100,11 +100,8 @@ impl DepthTest {
         self.tolerance = pixels * (DEPTH_RANGE / side);
         let mut points = std::mem::take(&mut self.points);
         for point in &mut points {
-            point.visible = self.is_visible(
-                f64::from(point.x),
-                f64::from(point.y),
-                f64::from(point.depth),
-            );
+            let (x, y) = (f64::from(point.x), f64::from(point.y));
+            point.visible = self.is_visible(x, y, f64::from(point.depth));
         }
         self.points = points;
     }
@@ -119,13 +116,13 @@ impl DepthTest {
         if a.visible || b.visible || c.visible {
             return true;
         }
+        if self.rule != UnseenRule::Plane {
+            return false;
+        }
         let third = |a: i32, b: i32, c: i32| f64::from(a + b + c) * (1.0 / 3.0);
-        self.rule == UnseenRule::Plane
-            && self.is_visible(
-                third(a.x, b.x, c.x),
-                third(a.y, b.y, c.y),
-                (f64::from(a.depth) + f64::from(b.depth) + f64::from(c.depth)) * (1.0 / 3.0),
-            )
+        let depth = f64::from(a.depth) + f64::from(b.depth) + f64::from(c.depth);
+        let (x, y) = (third(a.x, b.x, c.x), third(a.y, b.y, c.y));
+        self.is_visible(x, y, depth * (1.0 / 3.0))
     }
 
     /// True where the rule holds only for a triangle that covers no sample, and this one may cover some: fast, and
@@ -149,10 +146,7 @@ impl DepthTest {
             return true;
         }
         // One pixel centre: is it beyond an edge, wherever the corners were moved to?
-        let (x, y) = (
-            i64::from(left * PIXEL + HALF),
-            i64::from(top * PIXEL + HALF),
-        );
+        let [x, y] = [left, top].each(|at| i64::from(at * PIXEL + HALF));
         let side = |p: Point, q: Point| {
             let (dx, dy) = (i64::from(q.x - p.x), i64::from(q.y - p.y));
             let value = dx * (y - i64::from(p.y)) - dy * (x - i64::from(p.x));
@@ -210,15 +204,10 @@ impl DepthTest {
     fn is_visible(&self, x: f64, y: f64, depth: f64) -> bool {
         // Rounding may put a point on the border of the image outside.
         let last = self.size - 1;
-        let (column, row) = (
-            (x as i32 >> 16).clamp(0, last),
-            (y as i32 >> 16).clamp(0, last),
-        );
+        let [column, row] = [x, y].each(|at| (at as i32 >> 16).clamp(0, last));
         let slope = self.slopes[(row * self.size + column) as usize];
-        let (x, y) = (
-            x - f64::from(column * PIXEL + HALF),
-            y - f64::from(row * PIXEL + HALF),
-        );
+        let [left, top] = [column, row].each(|at| f64::from(at * PIXEL + HALF));
+        let (x, y) = (x - left, y - top);
         depth <= slope.center + (slope.x * x + slope.y * y) + self.tolerance
     }
 }
@@ -235,11 +224,8 @@ impl Slope {
     /// The plane of a triangle around a pixel's centre; `None` where it is seen exactly from its edge.
     fn of([a, b, c]: [Point; 3], center_x: i32, center_y: i32) -> Option<Self> {
         let edge = |p: Point| {
-            DVec3::new(
-                f64::from(p.x - a.x),
-                f64::from(p.y - a.y),
-                f64::from(p.depth) - f64::from(a.depth),
-            )
+            let depth = f64::from(p.depth) - f64::from(a.depth);
+            DVec3::new(f64::from(p.x - a.x), f64::from(p.y - a.y), depth)
         };
         let normal = edge(b).cross(edge(c));
         if normal.z == 0.0 {

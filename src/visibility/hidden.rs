@@ -3,7 +3,7 @@
 use super::Visibility;
 use crate::{
     Error, Result,
-    mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, VertexTriangles},
+    mesh::{Attributes, ChannelKind, Mesh, MeshParts, VertexTriangles},
     num::Each,
 };
 
@@ -29,9 +29,8 @@ pub fn remove_hidden(mesh: &Mesh, visibility: &Visibility, rings: u32) -> Result
         grow(mesh, &mut kept, rings);
     }
     if !kept.contains(&true) {
-        return Err(Error::Usage(
-            "no view sees any triangle; expected something to keep: use larger ID buffers".into(),
-        ));
+        let told = "no view sees any triangle; expected something to keep: use larger ID buffers";
+        return Err(Error::Usage(told.into()));
     }
     part(mesh, &kept).map_err(Error::internal)
 }
@@ -40,9 +39,8 @@ pub fn remove_hidden(mesh: &Mesh, visibility: &Visibility, rings: u32) -> Result
 fn grow(mesh: &Mesh, kept: &mut [bool], rings: u32) {
     let around = VertexTriangles::of(mesh);
     let mut reached = vec![false; mesh.positions().len()];
-    let mut border: Vec<u32> = (0..kept.len() as u32)
-        .filter(|&t| kept[t as usize])
-        .collect();
+    let of_kept = |&t: &u32| kept[t as usize];
+    let mut border: Vec<u32> = (0..kept.len() as u32).filter(of_kept).collect();
     for _ in 0..rings {
         let mut next = Vec::new();
         for &t in &border {
@@ -69,10 +67,10 @@ fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh> {
     let of_kept = |t: &usize| kept[*t];
     let chosen: Vec<usize> = (0..kept.len()).filter(of_kept).collect();
     let mut vertices = Renumbering::new(mesh.positions().len());
-    let triangles = chosen
-        .iter()
-        .map(|&t| mesh.triangles()[t].each(|v| vertices.of(v)))
-        .collect();
+    let triangle = |&t: &usize| mesh.triangles()[t].each(|v| vertices.of(v));
+    let triangles = chosen.iter().map(triangle).collect();
+    let old = vertices.old.iter();
+    let positions = old.map(|&v| mesh.positions()[v as usize]).collect();
     let attributes = mesh.attributes();
     let mut wedges = Renumbering::new(attributes.wedge_count());
     let corners: Vec<[u32; 3]> = if attributes.is_empty() {
@@ -84,24 +82,14 @@ fn part(mesh: &Mesh, kept: &[bool]) -> Result<Mesh> {
     let kinds: Vec<ChannelKind> = attributes.channels().iter().map(|c| c.kind).collect();
     let rows = wedges.old.iter().flat_map(|&w| attributes.row(w));
     let attributes = Attributes::new(&kinds, rows.copied().collect(), corners)?;
-    let materials = mesh.materials();
-    let of_triangle = if materials.of_triangle.is_empty() {
-        Vec::new()
-    } else {
-        chosen.iter().map(|&t| materials.of_triangle[t]).collect()
-    };
+    let mut materials = mesh.materials().clone();
+    let mut kept = kept.iter();
+    materials.of_triangle.retain(|_| kept.next() == Some(&true));
     Mesh::new(MeshParts {
-        positions: vertices
-            .old
-            .iter()
-            .map(|&v| mesh.positions()[v as usize])
-            .collect(),
+        positions,
         triangles,
         attributes,
-        materials: Materials {
-            of_triangle,
-            ..materials.clone()
-        },
+        materials,
         precision: mesh.precision(),
     })
 }

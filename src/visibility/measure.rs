@@ -83,11 +83,8 @@ impl Visibility {
         let triangles: Vec<f64> = if counts.back.is_empty() {
             front.collect()
         } else {
-            let back = counts.back.iter().map(share);
-            front
-                .zip(back)
-                .map(|(f, b)| if b > f { b } else { f })
-                .collect()
+            let sides = front.zip(counts.back.iter().map(share));
+            sides.map(|(f, b)| if b > f { b } else { f }).collect()
         };
         let frame = frame_of(mesh);
         let (mut all, mut visible, mut hidden) = (0.0, 0.0, 0.0);
@@ -99,12 +96,9 @@ impl Visibility {
                 hidden += area;
             }
         }
-        let of_all = |part: f64| {
-            if all > 0.0 {
-                (part / all).clamp(0.0, 1.0)
-            } else {
-                0.0
-            }
+        let of_all = |part: f64| match all > 0.0 {
+            true => (part / all).clamp(0.0, 1.0),
+            false => 0.0,
         };
         Ok(Self {
             mesh: of_all(visible),
@@ -119,9 +113,8 @@ impl Visibility {
 
 /// The seen share of the weights.
 fn share(weights: &Weights) -> f64 {
-    if weights.all == 0 {
-        0.0
-    } else {
-        weights.seen as f64 / weights.all as f64
+    match weights.all {
+        0 => 0.0,
+        all => weights.seen as f64 / all as f64,
     }
 }

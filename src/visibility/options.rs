@@ -130,17 +130,15 @@ impl MeasureOptions {
             )));
         }
         if !(1..=SIDE_LIMIT).contains(&self.size) {
-            return Err(Error::Usage(format!(
-                "ID buffers of {} pixels; expected 1 to {SIDE_LIMIT}",
-                self.size
-            )));
+            let size = self.size;
+            let told = format!("ID buffers of {size} pixels; expected 1 to {SIDE_LIMIT}");
+            return Err(Error::Usage(told));
         }
         if let Some(limit) = self.edge_limit
             && !(1.0..f64::INFINITY).contains(&limit)
         {
-            return Err(Error::Usage(format!(
-                "pieces with edges of {limit} pixels; expected at least 1"
-            )));
+            let told = format!("pieces with edges of {limit} pixels; expected at least 1");
+            return Err(Error::Usage(told));
         }
         Ok(())
     }

@@ -87,44 +87,28 @@ impl PartialVisibility {
     /// common; this survey is then unchanged.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         let refused = |what: &str, expected: &str| {
-            Err(Error::Usage(format!(
-                "the surveys {what}; expected {expected}"
-            )))
+            let told = format!("the surveys {what}; expected {expected}");
+            Err(Error::Usage(told))
         };
         if self.digest != other.digest || self.triangle_count() != other.triangle_count() {
-            return refused(
-                "belong to different meshes",
-                "parts of one measurement: the same file, read the same way",
-            );
+            let expected = "parts of one measurement: the same file, read the same way";
+            return refused("belong to different meshes", expected);
         }
         if self.options != other.options {
-            return refused(
-                &format!(
-                    "were counted with different options ({})",
-                    self.difference(other)
-                ),
-                "the same cameras, size and rules in every part",
-            );
+            let difference = self.difference(other);
+            let what = format!("were counted with different options ({difference})");
+            return refused(&what, "the same cameras, size and rules in every part");
         }
         if self.version != other.version {
-            let versions = format!("come from versions {} and {}", self.version, other.version);
-            return refused(
-                &versions,
-                "one version, because another may count otherwise",
-            );
+            let what = format!("come from versions {} and {}", self.version, other.version);
+            return refused(&what, "one version, because another may count otherwise");
         }
         for a in &self.ranges {
-            if let Some(b) = other
-                .ranges
-                .iter()
-                .find(|b| a.start < b.end && b.start < a.end)
-            {
-                let both = format!(
-                    "have views {}..{} in common",
-                    a.start.max(b.start),
-                    a.end.min(b.end)
-                );
-                return refused(&both, "every view in one part only");
+            let common = |b: &&Range<u32>| a.start < b.end && b.start < a.end;
+            if let Some(b) = other.ranges.iter().find(common) {
+                let (start, end) = (a.start.max(b.start), a.end.min(b.end));
+                let what = format!("have views {start}..{end} in common");
+                return refused(&what, "every view in one part only");
             }
         }
         self.counts.merge(&other.counts);
@@ -148,9 +132,8 @@ impl PartialVisibility {
                 Ok(serde_json::Value::Object(options)) => options,
                 _ => serde_json::Map::new(),
             });
-        let differs = own
-            .iter()
-            .filter(|(name, value)| others.get(*name) != Some(*value));
+        let own = own.iter();
+        let differs = own.filter(|(name, value)| others.get(*name) != Some(*value));
         let texts = differs.map(|(name, value)| {
             let other = others.get(name).unwrap_or(&serde_json::Value::Null);
             format!("{name} {value} and {other}")
@@ -183,10 +166,8 @@ impl PartialVisibility {
             )));
         }
         if !self.is_complete() {
-            let present = self
-                .ranges
-                .iter()
-                .map(|r| format!("{}..{}", r.start, r.end));
+            let ranges = self.ranges.iter();
+            let present = ranges.map(|r| format!("{}..{}", r.start, r.end));
             return Err(Error::Usage(format!(
                 "the survey has views {} of 0..{}; expected all of them: merge the missing parts first",
                 present.collect::<Vec<_>>().join(", "),

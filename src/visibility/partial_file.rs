@@ -63,9 +63,8 @@ impl PartialVisibility {
         let version = reader.text()?;
         let options: MeasureOptions = serde_json::from_str(&reader.text()?)
             .map_err(|e| reader.bad(&format!("the options cannot be read: {e}")))?;
-        options
-            .check()
-            .map_err(|e| reader.bad(&format!("the options make no sense: {e}")))?;
+        let checked = options.check();
+        checked.map_err(|e| reader.bad(&format!("the options make no sense: {e}")))?;
         let digest = reader.array()?;
         let ranges = ranges(&mut reader, options.cameras())?;
         let views = ranges.iter().map(|r| r.end - r.start).sum();

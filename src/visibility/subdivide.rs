@@ -54,10 +54,9 @@ impl Pieces {
             starts,
         } = division;
         let area = |t: &[u32; 3]| 0.5 * double_area(t.each(|v| positions[v as usize]));
-        let areas = if starts.is_empty() {
-            Vec::new()
-        } else {
-            triangles.iter().map(area).collect()
+        let areas = match starts.is_empty() {
+            true => Vec::new(),
+            false => triangles.iter().map(area).collect(),
         };
         let ids = (0..triangles.len() as u32).collect();
         Ok(Self {
@@ -70,11 +69,7 @@ impl Pieces {
     /// The pieces of a face.
     #[inline]
     pub(super) fn of(&self, face: usize) -> std::ops::Range<usize> {
-        if self.starts.is_empty() {
-            face..face + 1
-        } else {
-            self.starts[face] as usize..self.starts[face + 1] as usize
-        }
+        pieces_of(&self.starts, face)
     }
 
     /// True where every face is its own piece.
@@ -87,6 +82,15 @@ impl Pieces {
     pub(super) fn area(&self, piece: usize) -> f64 {
         self.areas[piece]
     }
+}
+
+/// The pieces of a face; itself where no face has others.
+#[inline]
+fn pieces_of(starts: &[u32], face: usize) -> std::ops::Range<usize> {
+    if starts.is_empty() {
+        return face..face + 1;
+    }
+    starts[face] as usize..starts[face + 1] as usize
 }
 
 /// Triangles while they are divided.
@@ -123,29 +127,22 @@ impl Division {
             edge.dot(edge) > limit
         };
         let any = |&[a, b, c]: &[u32; 3]| {
-            long(&self.positions, a, b)
-                || long(&self.positions, b, c)
-                || long(&self.positions, c, a)
+            let mut edges = [[a, b], [b, c], [c, a]].into_iter();
+            edges.any(|[a, b]| long(&self.positions, a, b))
         };
         if !self.triangles.iter().any(any) {
             return Ok(false);
         }
-        let faces = if self.starts.is_empty() {
-            self.triangles.len()
-        } else {
-            self.starts.len() - 1
+        let faces = match self.starts.len() {
+            0 => self.triangles.len(),
+            count => count - 1,
         };
         let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         let mut finer = Vec::with_capacity(2 * self.triangles.len());
         let mut starts = Vec::with_capacity(faces + 1);
         for face in 0..faces {
             starts.push(finer.len() as u32);
-            let range = if self.starts.is_empty() {
-                face..face + 1
-            } else {
-                self.starts[face] as usize..self.starts[face + 1] as usize
-            };
-            for &corners in &self.triangles[range] {
+            for &corners in &self.triangles[pieces_of(&self.starts, face)] {
                 let positions = &mut self.positions;
                 let mut middle = |a: u32, b: u32| {
                     if !long(positions, a, b) {
@@ -224,10 +221,8 @@ mod tests {
     }
 
     fn area(corners: [DVec3; 3]) -> f64 {
-        (corners[1] - corners[0])
-            .cross(corners[2] - corners[0])
-            .length()
-            / 2.0
+        let [a, b, c] = corners;
+        (b - a).cross(c - a).length() / 2.0
     }
 
     proptest! {

@@ -22,11 +22,8 @@ impl VisibilityTable {
     /// # Panics
     /// For a camera or triangle that there is not.
     pub fn sees(&self, camera: u32, triangle: usize) -> bool {
-        assert!(
-            triangle < self.triangles,
-            "triangle {triangle} of {}",
-            self.triangles
-        );
+        let count = self.triangles;
+        assert!(triangle < count, "triangle {triangle} of {count}");
         self.packed.at(triangle as u32 / 8, camera) >> (triangle % 8) & 1 == 1
     }
 }

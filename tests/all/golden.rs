@@ -15,7 +15,7 @@ use lodmark::{
     view::{Sphere, ViewSet},
 };
 
-use crate::support::{folder, lodmark, scene_of};
+use crate::support::{code, folder, lodmark, scene_of, stdout};
 
 fn checked_in() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/golden"))
@@ -31,11 +31,7 @@ fn few_items() -> Vec<Item> {
     };
     vec![
         item("a/one", "1 2 3", None),
-        item(
-            "a/two",
-            &plane_sha256(&plane),
-            Some(Picture::Grey(plane.clone())),
-        ),
+        item("a/two", &plane_sha256(&plane), Some(Picture::Grey(plane))),
         item("ab/three", "x", None),
     ]
 }
@@ -91,10 +87,8 @@ fn one_bit_of_one_sample_changes_the_hash() {
     let fine = set.clone().with_subpixel(SubpixelBits::Sixteen);
     let other = raster::keys(&scene, &fine.views[3], &fine);
     let keys = raster::keys(&scene, &set.views[3], &set);
-    assert_ne!(
-        plane_sha256(&raster::depths(&keys)),
-        plane_sha256(&raster::depths(&other))
-    );
+    let [coarse, fine] = [keys, other].map(|keys| plane_sha256(&raster::depths(&keys)));
+    assert_ne!(coarse, fine);
 }
 
 #[test]
@@ -103,10 +97,8 @@ fn every_planted_change_of_a_golden_is_noticed() {
     let out = folder.path().join("out");
     let items = few_items();
     bless(folder.path(), &items).expect("target is writable");
-    assert_eq!(
-        check(folder.path(), &items, &out).expect("readable"),
-        vec![]
-    );
+    let found = check(folder.path(), &items, &out).expect("readable");
+    assert_eq!(found, []);
     assert!(!out.exists(), "nothing to show");
     for changed in 0..items.len() {
         let mut planted = items.clone();
@@ -133,10 +125,8 @@ fn a_pixel_that_changed_by_one_level_is_shown() {
     let found = check(folder.path(), &items, &out).expect("readable");
     assert_eq!(names(&found), ["a/two"]);
     let text = found[0].to_string();
-    assert!(
-        text.contains("1 of 8 pixels differ, first at (1, 1): expected 150, found 151"),
-        "{text}"
-    );
+    let told = "1 of 8 pixels differ, first at (1, 1): expected 150, found 151";
+    assert!(text.contains(told), "{text}");
     let strip = png::read(&picture_path(&out, "a/two")).expect("a strip was written");
     assert!(strip.into_luma().width() > 3 * 4);
     let json = fs::read_to_string(out.join("mismatches.json")).expect("a report was written");
@@ -159,11 +149,8 @@ fn a_picture_that_no_longer_shows_what_is_hashed_is_named() {
     assert_eq!(names(&found), ["a/two.png"]);
     assert!(found[0].to_string().contains("golden bless"));
     bless(folder.path(), &items).expect("target is writable");
-    assert!(
-        check(folder.path(), &items, &out)
-            .expect("readable")
-            .is_empty()
-    );
+    let found = check(folder.path(), &items, &out).expect("readable");
+    assert_eq!(found, []);
 }
 
 #[test]
@@ -174,10 +161,8 @@ fn a_golden_that_is_missing_or_left_over_is_named() {
     let nothing = check(folder.path(), &items, &out).expect("an empty folder is no error");
     assert_eq!(names(&nothing), ["a/one", "a/two", "ab/three", "a/two.png"]);
     for mismatch in &nothing {
-        assert!(
-            mismatch.to_string().contains("`lodmark golden bless`"),
-            "{mismatch}"
-        );
+        let text = mismatch.to_string();
+        assert!(text.contains("`lodmark golden bless`"), "{text}");
     }
     bless(folder.path(), &items).expect("target is writable");
     let found = check(folder.path(), &items[1..], &out).expect("readable");
@@ -191,18 +176,13 @@ fn a_golden_that_is_missing_or_left_over_is_named() {
 
 #[test]
 fn a_damaged_record_is_refused() {
-    assert!(
-        Record::parse("a/one\n", "-")
-            .expect_err("no value")
-            .to_string()
-            .contains("line 1")
-    );
-    assert!(
-        Record::parse("# x\na/one 1\na/one 1\n", "-")
-            .expect_err("twice")
-            .to_string()
-            .contains("line 3 repeats `a/one`")
-    );
+    for (text, place) in [
+        ("a/one\n", "line 1"),
+        ("# x\na/one 1\na/one 1\n", "line 3 repeats `a/one`"),
+    ] {
+        let refused = Record::parse(text, "-").expect_err("damaged");
+        assert!(refused.to_string().contains(place), "{refused}");
+    }
     let folder = folder();
     fs::write(folder.path().join(RECORD_NAME), "nonsense\n").expect("target is writable");
     let refused = check(folder.path(), &few_items(), folder.path()).expect_err("damaged");
@@ -214,10 +194,10 @@ fn the_command_checks_itself_without_files() {
     let folder = folder();
     // The whole set is computed by `every_golden_holds`, and by the command in every lane of `reproduce.py`.
     let chosen = ["pictures", "replay"];
-    let words = ["selfcheck", "--threads", "3", "--group", chosen[0]];
-    let done = lodmark(&folder, &[&words[..], &["--group", chosen[1]]].concat());
-    let said = String::from_utf8_lossy(&done.stdout);
-    assert_eq!(done.status.code(), Some(0), "{said}");
+    let words = "selfcheck --threads 3 --group pictures --group replay";
+    let done = lodmark(&folder, words);
+    let said = stdout(&done);
+    assert_eq!(code(&done), 0, "{said}");
     assert!(said.contains("3 threads"), "{said}");
     for group in GROUPS {
         let line = format!("  {} ", group.name);
@@ -238,20 +218,16 @@ fn the_command_refuses_a_golden_that_does_not_hold() {
     }
     let record = folder.path().join("golden").join(RECORD_NAME);
     let text = fs::read_to_string(&record).expect("readable");
-    let (name, value) = text
-        .lines()
-        .filter_map(|line| line.split_once(' '))
-        .find(|(name, _)| *name == "pictures/probe/00/luma")
-        .expect("the golden of a picture");
+    let mut lines = text.lines().filter_map(|line| line.split_once(' '));
+    let picture = lines.find(|(name, _)| *name == "pictures/probe/00/luma");
+    let (name, value) = picture.expect("the golden of a picture");
     let first = if value.starts_with('0') { "1" } else { "0" };
     let planted = format!("{name} {first}{}", &value[1..]);
     fs::write(&record, text.replace(&format!("{name} {value}"), &planted)).expect("writable");
     let done = lodmark(&folder, "golden check --group pictures --out out");
-    let said = String::from_utf8_lossy(&done.stdout);
-    assert_eq!(done.status.code(), Some(1), "{said}");
-    assert!(
-        said.contains(&format!("{planted}, found {value}").replacen(' ', ": expected ", 1)),
-        "{said}"
-    );
+    let said = stdout(&done);
+    assert_eq!(code(&done), 1, "{said}");
+    let told = format!("{planted}, found {value}").replacen(' ', ": expected ", 1);
+    assert!(said.contains(&told), "{said}");
     assert!(folder.path().join("out/mismatches.json").exists());
 }

@@ -194,11 +194,8 @@ impl ImageError {
 impl ViewReport {
     /// Lists the errors of every view; eyes are those of `set`.
     pub(super) fn of_all(set: &ViewSet, appearance: &Appearance) -> Vec<Self> {
-        let errors = appearance
-            .flat
-            .views()
-            .iter()
-            .zip(appearance.gouraud.views());
+        let (flat, gouraud) = (appearance.flat.views(), appearance.gouraud.views());
+        let errors = flat.iter().zip(gouraud);
         let mut reports = Vec::with_capacity(set.views.len());
         for (view, (drawn, (flat, gouraud))) in set.views.iter().zip(errors).enumerate() {
             let (eye, axis) = match drawn.eye {

@@ -92,9 +92,8 @@ impl<'a> Judge<'a> {
         shading: Interpolation,
     ) -> Result<Vec<Grid<u8>>> {
         let Some([set, _]) = &self.views else {
-            return Err(Error::Usage(
-                "no views were asked for; expected some to draw pictures in".into(),
-            ));
+            let told = "no views were asked for; expected some to draw pictures in";
+            return Err(Error::Usage(told.into()));
         };
         let scenes = std::iter::once(&self.scene).chain(candidates.iter().copied());
         scenes
@@ -108,10 +107,8 @@ impl<'a> Judge<'a> {
     /// As [`compare`].
     pub fn compare(&self, candidates: &[&Mesh], progress: &dyn Progress) -> Result<Comparison> {
         let reference = self.shape(self.reference, progress)?;
-        let mut shapes = Vec::with_capacity(candidates.len());
-        for mesh in candidates {
-            shapes.push(self.shape(mesh, progress)?);
-        }
+        let shapes = candidates.iter().map(|mesh| self.shape(mesh, progress));
+        let shapes = shapes.collect::<Result<Vec<_>>>()?;
         let (looks, image_errors) = self.draw(candidates, progress)?;
         let mut reports = Vec::with_capacity(candidates.len());
         for (i, (mesh, shape)) in candidates.iter().zip(shapes).enumerate() {
@@ -139,11 +136,8 @@ impl<'a> Judge<'a> {
                 DistanceReport::new(distance)
             }
         };
-        let folds = if self.options.folds {
-            Some(folds(self.reference, mesh, progress)?)
-        } else {
-            None
-        };
+        let folds = || folds(self.reference, mesh, progress);
+        let folds = self.options.folds.then(folds).transpose()?;
         Ok(ErrorReport {
             pictures: look.map(PictureReport::new),
             distances,
@@ -180,11 +174,8 @@ impl<'a> Judge<'a> {
             Some([set, _]) if self.options.silhouettes => {
                 let eyes: Vec<Eye> = set.views.iter().map(|view| view.eye).collect();
                 let framed = mesh.enter_frame(self.frame);
-                Some(silhouette_histogram(
-                    framed.in_frame_units(),
-                    &eyes,
-                    progress,
-                )?)
+                let mesh = framed.in_frame_units();
+                Some(silhouette_histogram(mesh, &eyes, progress)?)
             }
             _ => None,
         };

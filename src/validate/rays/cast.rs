@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    hierarchy::Hierarchy,
-    intersect::{Rays, line},
+    hierarchy::{Hierarchy, Line},
+    intersect::Rays,
 };
 use crate::{
     Progress, Result,
@@ -64,11 +64,9 @@ impl RayCaster {
                 let y = first + i as u32;
                 for (key, x) in row.iter_mut().zip(0..width) {
                     let ray = rays.ray(i64::from(x), i64::from(y));
-                    let line = line(
-                        planes[0][x as usize],
-                        // Rows count downwards, planes upwards.
-                        planes[1][(height - 1 - y) as usize],
-                    );
+                    // Rows count downwards, planes upwards.
+                    let row = planes[1][(height - 1 - y) as usize];
+                    let line = Line::new([planes[0][x as usize], row]);
                     self.hierarchy.candidates(line.as_ref(), |t| {
                         if let Some(hit) = rays.hit(ray, self.triangles[t as usize]) {
                             *key = (*key).min(SampleKey::new(hit.depth, t));
@@ -106,19 +104,15 @@ mod tests {
         // Where the mesh is: at the origin, or so far away that f32 knows no details.
         let place = prop_oneof![Just(0.0), Just(65_536.0), Just(-3e6)];
         (any::<bool>(), place).prop_flat_map(move |(flat, place)| {
-            proptest::collection::vec([point(flat), point(flat), point(flat)], 1..24).prop_map(
-                move |soup| {
-                    let place = DVec3::new(place, -place, place * 0.5);
-                    let corners = soup.into_iter().flatten();
-                    let positions: Vec<DVec3> = corners
-                        .map(|(x, y, z)| DVec3::new(x, y, z) + place)
-                        .collect();
-                    let triangles = (0..positions.len() as u32 / 3)
-                        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-                        .collect();
-                    Mesh::from_triangles(positions, triangles).expect("valid")
-                },
-            )
+            let corners = [point(flat), point(flat), point(flat)];
+            proptest::collection::vec(corners, 1..24).prop_map(move |soup| {
+                let place = DVec3::new(place, -place, place * 0.5);
+                let moved = |(x, y, z)| DVec3::new(x, y, z) + place;
+                let triangles = (0..soup.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+                let triangles = triangles.collect();
+                let positions = soup.into_iter().flatten().map(moved).collect();
+                Mesh::from_triangles(positions, triangles).expect("valid")
+            })
         })
     }
 
@@ -136,8 +130,7 @@ mod tests {
         ) {
             let direction = DVec3::from_array(direction);
             prop_assume!(direction.length_squared() > 1e-3);
-            let projection =
-                Projection::of(orthographic);
+            let projection = Projection::of(orthographic);
             let sphere = Sphere::of_mesh(&mesh).expect("triangles");
             let set = ViewSet::around(&sphere, &[direction], 24, 16, projection)
                 .expect("views")

@@ -3,7 +3,8 @@
 use super::{
     cast::RayCaster,
     classify::TOLERANCE,
-    intersect::{Ray, Rays, line},
+    hierarchy::Line,
+    intersect::{Ray, Rays},
     outline::Outline,
 };
 use crate::{num::Each, view::Cull};
@@ -57,7 +58,7 @@ impl<'a> Pixel<'a> {
         // Rows count downwards, planes upwards.
         let planes = [(0, x), (1, self.rays.size[1] - 1 - y)]
             .each(|(axis, i)| self.rays.plane(axis, i, &self.caster.hierarchy));
-        let line = line(planes[0], planes[1]);
+        let line = Line::new(planes);
         let mut certain: Option<f64> = None;
         self.caster.hierarchy.candidates(line.as_ref(), |t| {
             let triangle = self.caster.triangles[t as usize];

@@ -62,21 +62,13 @@ pub enum Class {
 }
 
 impl Class {
+    /// Number of classes.
+    pub const COUNT: usize = CLASSES.len();
+
     /// All classes, in their order.
-    pub const ALL: [Self; 12] = [
-        Self::Background,
-        Self::Equal,
-        Self::Edge,
-        Self::DepthTie,
-        Self::Degenerate,
-        Self::Stray,
-        Self::Hole,
-        Self::Occluded,
-        Self::Depth,
-        Self::Range,
-        Self::GridExact,
-        Self::Rays,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        CLASSES.into_iter().map(|(class, ..)| class)
+    }
 
     /// True for the three reasons why pictures may differ.
     pub fn is_explained(self) -> bool {
@@ -90,40 +82,30 @@ impl Class {
 
     /// Name in reports.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Background => "background",
-            Self::Equal => "equal",
-            Self::Edge => "edge",
-            Self::DepthTie => "depth-tie",
-            Self::Degenerate => "degenerate",
-            Self::Stray => "stray",
-            Self::Hole => "hole",
-            Self::Occluded => "occluded",
-            Self::Depth => "depth",
-            Self::Range => "range",
-            Self::GridExact => "grid-exact",
-            Self::Rays => "rays",
-        }
+        CLASSES[self as usize].1
     }
 
     /// Colour in pictures: greys without a difference, cold ones where it is explained, warm ones for bugs.
     pub fn color(self) -> [u8; 3] {
-        match self {
-            Self::Background => [24, 24, 24],
-            Self::Equal => [96, 96, 96],
-            Self::Edge => [0, 160, 255],
-            Self::DepthTie => [0, 220, 120],
-            Self::Degenerate => [130, 120, 255],
-            Self::Stray => [255, 0, 0],
-            Self::Hole => [255, 140, 0],
-            Self::Occluded => [255, 0, 180],
-            Self::Depth => [255, 220, 0],
-            Self::Range => [255, 255, 255],
-            Self::GridExact => [255, 90, 90],
-            Self::Rays => [190, 60, 0],
-        }
+        CLASSES[self as usize].2
     }
 }
+
+/// Every class with its name and its colour, in their order.
+const CLASSES: [(Class, &str, [u8; 3]); 12] = [
+    (Class::Background, "background", [24, 24, 24]),
+    (Class::Equal, "equal", [96, 96, 96]),
+    (Class::Edge, "edge", [0, 160, 255]),
+    (Class::DepthTie, "depth-tie", [0, 220, 120]),
+    (Class::Degenerate, "degenerate", [130, 120, 255]),
+    (Class::Stray, "stray", [255, 0, 0]),
+    (Class::Hole, "hole", [255, 140, 0]),
+    (Class::Occluded, "occluded", [255, 0, 180]),
+    (Class::Depth, "depth", [255, 220, 0]),
+    (Class::Range, "range", [255, 255, 255]),
+    (Class::GridExact, "grid-exact", [255, 90, 90]),
+    (Class::Rays, "rays", [190, 60, 0]),
+];
 
 /// A differing pixel with the integers to find it again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -184,21 +166,14 @@ impl RayCaster {
         progress: &dyn Progress,
     ) -> Result<Classified> {
         let size = [set.width * set.samples, set.height * set.samples];
-        let (Some(view), true) = (
-            set.views.get(index),
-            [raster, cast]
-                .iter()
-                .all(|p| [p.width(), p.height()] == size),
-        ) else {
+        let sizes = [raster, cast].each(|p| [p.width(), p.height()]);
+        let view = set.views.get(index).filter(|_| sizes == [size; 2]);
+        let Some(view) = view else {
+            let count = set.views.len();
+            let [first, second, expected] =
+                [sizes[0], sizes[1], size].each(|[width, height]| format!("{width} x {height}"));
             return Err(Error::Usage(format!(
-                "view {index} of {} with pictures of {} x {} and {} x {}; expected {} x {}",
-                set.views.len(),
-                raster.width(),
-                raster.height(),
-                cast.width(),
-                cast.height(),
-                size[0],
-                size[1]
+                "view {index} of {count} with pictures of {first} and {second}; expected {expected}"
             )));
         };
         let rays = Rays::new(view, set, &self.positions);
@@ -256,18 +231,13 @@ impl Judge<'_> {
             .zip(raster.iter().zip(cast))
             .map(|(x, (&shown, &hit))| {
                 if shown == hit {
-                    return if shown.is_background() {
-                        Class::Background
-                    } else {
-                        Class::Equal
+                    return match shown.is_background() {
+                        true => Class::Background,
+                        false => Class::Equal,
                     };
                 }
-                let pixel = Pixel::new(
-                    self.caster,
-                    self.rays,
-                    self.view.cull,
-                    [i64::from(x), i64::from(y)],
-                );
+                let at = [x, y].each(i64::from);
+                let pixel = Pixel::new(self.caster, self.rays, self.view.cull, at);
                 let class = self.class(&pixel, shown, hit);
                 if class != Class::Equal {
                     let side = |key: SampleKey| Shown {
@@ -288,8 +258,8 @@ impl Judge<'_> {
                     });
                 }
                 class
-            })
-            .collect();
+            });
+        let classes = classes.collect();
         (classes, witnesses)
     }
 

@@ -67,48 +67,42 @@ impl Exact {
     }
 
     fn limb(&self, place: i32) -> u64 {
-        usize::try_from(place - self.place)
-            .ok()
-            .and_then(|i| self.limbs.get(i).copied())
-            .unwrap_or(0)
+        let at = usize::try_from(place - self.place).ok();
+        at.and_then(|i| self.limbs.get(i).copied()).unwrap_or(0)
     }
 
     /// `|self| + |other|` with the sign of `self`.
     fn add_sizes(&self, other: &Self) -> Self {
         let (first, last) = union(self.places(), other.places());
         let mut carry = 0_u128;
-        let limbs = (first..=last)
-            .map(|place| {
-                carry += u128::from(self.limb(place)) + u128::from(other.limb(place));
-                let limb = carry as u64;
-                carry >>= 64;
-                limb
-            })
-            .collect();
-        Self::new(self.negative, limbs, first)
+        let limbs = (first..=last).map(|place| {
+            carry += u128::from(self.limb(place)) + u128::from(other.limb(place));
+            let limb = carry as u64;
+            carry >>= 64;
+            limb
+        });
+        Self::new(self.negative, limbs.collect(), first)
     }
 
     /// `|self| - |other|` where that is not negative, with the sign of `self`.
     fn subtract_sizes(&self, other: &Self) -> Self {
         let (first, last) = union(self.places(), other.places());
         let mut borrow = false;
-        let limbs = (first..last)
-            .map(|place| {
-                let (limb, below) = self.limb(place).overflowing_sub(other.limb(place));
-                let (limb, still) = limb.overflowing_sub(u64::from(borrow));
-                borrow = below || still;
-                limb
-            })
-            .collect();
-        Self::new(self.negative, limbs, first)
+        let limbs = (first..last).map(|place| {
+            let (limb, below) = self.limb(place).overflowing_sub(other.limb(place));
+            let (limb, still) = limb.overflowing_sub(u64::from(borrow));
+            borrow = below || still;
+            limb
+        });
+        Self::new(self.negative, limbs.collect(), first)
     }
 
     fn compare_sizes(&self, other: &Self) -> Ordering {
         let (first, last) = union(self.places(), other.places());
-        (first..last)
-            .rev()
-            .map(|place| self.limb(place).cmp(&other.limb(place)))
-            .find(|&order| order != Ordering::Equal)
+        let from_top = (first..last).rev();
+        let mut orders = from_top.map(|place| self.limb(place).cmp(&other.limb(place)));
+        orders
+            .find(|order| order.is_ne())
             .unwrap_or(Ordering::Equal)
     }
 }

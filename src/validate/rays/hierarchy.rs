@@ -34,6 +34,11 @@ const MARGIN: f32 = 7.629_394_5e-6;
 /// Least sine of the angle between the planes of a line.
 const STEEPEST: f64 = 1e-4;
 
+/// A point in the precision of obvhs.
+fn narrow(p: DVec3) -> Vec3A {
+    Vec3A::from_array(p.to_array().each(|x| x as f32))
+}
+
 /// A hierarchy of the triangles of a mesh.
 pub(super) struct Hierarchy {
     tree: Bvh2,
@@ -52,8 +57,10 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The point where two planes `n . p + offset = 0` (in the frame of the hierarchy) meet; `None` where that is ill defined.
-    pub(super) fn new([a, b]: [(DVec3, f64); 2]) -> Option<Self> {
+    /// Where two planes `n . p + offset = 0` (in the frame of the hierarchy) meet, those of a ray's column and row; `None`
+    /// where one is ill defined, or that is.
+    pub(super) fn new(planes: [Option<(DVec3, f64)>; 2]) -> Option<Self> {
+        let [a, b] = [planes[0]?, planes[1]?];
         let (size_a, size_b) = (length(a.0), length(b.0));
         let (normal_a, normal_b) = (unit(a.0)?, unit(b.0)?);
         let (offset_a, offset_b) = (a.1 / size_a, b.1 / size_b);
@@ -84,10 +91,8 @@ impl Hierarchy {
                 exponent: half.exponent + 1,
             },
         };
-        let boxes: Vec<Aabb> = triangles
-            .iter()
-            .map(|t| hierarchy.bounds(t.each(|v| positions[v as usize])))
-            .collect();
+        let bounds = |t: &[u32; 3]| hierarchy.bounds(t.each(|v| positions[v as usize]));
+        let boxes: Vec<Aabb> = triangles.iter().map(bounds).collect();
         if !boxes.is_empty() {
             let params = BvhBuildParams::medium_build();
             hierarchy.tree = build_bvh2(&boxes, params, &mut Duration::default());
@@ -107,12 +112,9 @@ impl Hierarchy {
 
     fn bounds(&self, corners: [DVec3; 3]) -> Aabb {
         let [a, b, c] = corners.each(|p| self.frame.enter(p - self.center));
-        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().each(|x| x as f32));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let margin = Vec3A::splat(MARGIN);
-        Aabb::new(
-            narrow(a.min(b).min(c)) - margin,
-            narrow(a.max(b).max(c)) + margin,
-        )
+        Aabb::new(narrow(low) - margin, narrow(high) + margin)
     }
 
     /// Calls `visit` at least for every triangle that the line meets; for all of them where there is no line.
@@ -125,7 +127,6 @@ impl Hierarchy {
         if length(line.nearest) > 1.0 {
             return;
         }
-        let narrow = |p: DVec3| Vec3A::from_array(p.to_array().each(|x| x as f32));
         let origin = narrow(line.nearest - line.direction * 2.0);
         let ray = Ray::new_inf(origin, narrow(line.direction));
         self.tree.ray_traverse_anyhit(ray, |_, at| {

@@ -19,10 +19,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{
-    exact::Exact,
-    hierarchy::{Hierarchy, Line},
-};
+use super::{exact::Exact, hierarchy::Hierarchy};
 use crate::{
     num::Each,
     view::{Cull, Matrix, View, ViewSet},
@@ -101,10 +98,8 @@ impl Arithmetic for Rounded {
 
     fn times(&self, other: &Self) -> Self {
         let (a, b) = (self.value.abs(), other.value.abs());
-        Self::after(
-            self.value * other.value,
-            a * other.error + self.error * (b + other.error),
-        )
+        let error = a * other.error + self.error * (b + other.error);
+        Self::after(self.value * other.value, error)
     }
 
     fn negated(&self) -> Self {
@@ -133,10 +128,8 @@ pub(super) type Four<N> = [N; 4];
 fn clip<N: Arithmetic>(matrix: &Matrix, p: DVec3, number: impl Fn(f64) -> N) -> Four<N> {
     matrix.each(|m| {
         let term = |i: usize, x: f64| number(m[i]).times(&number(x));
-        term(0, p.x)
-            .plus(&term(1, p.y))
-            .plus(&term(2, p.z))
-            .plus(&number(m[3]))
+        let sum = term(0, p.x).plus(&term(1, p.y)).plus(&term(2, p.z));
+        sum.plus(&number(m[3]))
     })
 }
 
@@ -172,15 +165,13 @@ pub(super) struct Ray {
 
 impl<'a> Rays<'a> {
     pub(super) fn new(view: &View, set: &ViewSet, positions: &'a [DVec3]) -> Self {
+        let point = |&p: &DVec3| clip(&view.matrix, p, Rounded::exactly);
         Self {
             matrix: view.matrix,
             cull: view.cull,
             size: [set.width, set.height].each(|side| i64::from(side * set.samples)),
             positions,
-            points: positions
-                .iter()
-                .map(|&p| clip(&view.matrix, p, Rounded::exactly))
-                .collect(),
+            points: positions.iter().map(point).collect(),
         }
     }
 
@@ -205,9 +196,8 @@ impl<'a> Rays<'a> {
     /// The planes of every column (or, upwards, row) in the frame of a hierarchy.
     pub(super) fn planes(&self, axis: usize, hierarchy: &Hierarchy) -> Vec<Option<(DVec3, f64)>> {
         let center = self.exactly(hierarchy.center());
-        (0..self.size[axis])
-            .map(|i| self.plane_around(&center, axis, i, hierarchy))
-            .collect()
+        let plane = |i| self.plane_around(&center, axis, i, hierarchy);
+        (0..self.size[axis]).map(plane).collect()
     }
 
     /// One of [`Rays::planes`].
@@ -252,12 +242,9 @@ impl<'a> Rays<'a> {
         let [width, height] = self.size.each(|n| Rounded::exactly(n as f64));
         let [a, b, c] = triangle.each(|v| {
             let [x, y, z, w] = &self.points[v as usize];
-            [
-                width.times(x).minus(&column.times(w)),
-                height.times(y).minus(&row.times(w)),
-                *z,
-                *w,
-            ]
+            let a = width.times(x).minus(&column.times(w));
+            let b = height.times(y).minus(&row.times(w));
+            [a, b, *z, *w]
         });
         // A triangle on one side of a plane of the ray is the usual case.
         for k in 0..2 {
@@ -299,12 +286,11 @@ impl<'a> Rays<'a> {
         let [width, height] = self.size.each(Exact::from);
         let corners = triangle.each(|v| {
             let [x, y, z, w] = self.exactly(self.positions[v as usize]);
-            [
+            let (a, b) = (
                 &(&width * &x) - &(&column * &w),
                 &(&height * &y) - &(&row * &w),
-                z,
-                w,
-            ]
+            );
+            [a, b, z, w]
         });
         match meet(&corners)? {
             Meeting::Miss => None,
@@ -358,10 +344,8 @@ fn meet<N: Arithmetic>(corners: &[Four<N>; 3]) -> Option<Meeting<N>> {
         return Some(Meeting::Miss);
     }
     let sum = |k: usize| {
-        along_a
-            .times(&a[k])
-            .plus(&along_b.times(&b[k]))
-            .plus(&along_c.times(&c[k]))
+        let first = along_a.times(&a[k]).plus(&along_b.times(&b[k]));
+        first.plus(&along_c.times(&c[k]))
     };
     let (z, w) = (sum(2), sum(3));
     // The weights have the sign of the side; at the hit, w is their mean.
@@ -394,9 +378,4 @@ fn passes<N: Arithmetic>(p: &Four<N>, q: &Four<N>) -> Option<(N, Ordering)> {
         order = product(0, 3).sign()?;
     }
     Some((side, order))
-}
-
-/// The line of a ray, from the planes of its column and its row.
-pub(super) fn line(column: Option<(DVec3, f64)>, row: Option<(DVec3, f64)>) -> Option<Line> {
-    Line::new([column?, row?])
 }

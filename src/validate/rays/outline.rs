@@ -32,18 +32,15 @@ impl Outline {
         let [width, height] = rays.size.each(|side| side as f64);
         let corners = triangle.each(|v| {
             let [x, y, z, w] = rays.points[v as usize].each(|n| n.value);
-            [
+            let (a, b) = (
                 width * x - ray.column as f64 * w,
                 height * y - ray.row as f64 * w,
-                z,
-                w,
-            ]
+            );
+            [a, b, z, w]
         });
         let visible = in_front(&corners);
-        let places: Vec<[f64; 2]> = visible
-            .iter()
-            .map(|[a, b, _, w]| [a / (2.0 * w), b / (2.0 * w)])
-            .collect();
+        let place = |[a, b, _, w]: &Four<f64>| [a / (2.0 * w), b / (2.0 * w)];
+        let places: Vec<[f64; 2]> = visible.iter().map(place).collect();
         let depths = visible.iter().map(|[_, _, z, w]| z / w * DEPTHS);
         let range = depths.fold([f64::INFINITY, 0.0], |[low, high], z| {
             [
@@ -59,10 +56,7 @@ impl Outline {
                 + p[2] * (q[0] * r[1] - q[1] * r[0])
         };
         let whole = determinant([0, 1, 3]);
-        let (alpha, beta) = (
-            determinant([2, 1, 3]) / whole,
-            determinant([0, 2, 3]) / whole,
-        );
+        let [alpha, beta] = [[2, 1, 3], [0, 2, 3]].each(|k| determinant(k) / whole);
         let (distance, area, longest) = polygon(&places);
         Self {
             distance,
@@ -91,10 +85,8 @@ impl Outline {
                 z
             }
         };
-        [
-            held(self.depth - reach, low),
-            held(self.depth + reach, high),
-        ]
+        let (nearest, farthest) = (self.depth - reach, self.depth + reach);
+        [held(nearest, low), held(farthest, high)]
     }
 }
 
@@ -125,10 +117,8 @@ fn polygon(corners: &[[f64; 2]]) -> (f64, f64, f64) {
     for (i, p) in corners.iter().enumerate() {
         let q = corners[(i + 1) % corners.len()];
         let edge = [q[0] - p[0], q[1] - p[1]];
-        let (turn, square) = (
-            p[0] * q[1] - p[1] * q[0],
-            edge[0] * edge[0] + edge[1] * edge[1],
-        );
+        let turn = p[0] * q[1] - p[1] * q[0];
+        let square = edge[0] * edge[0] + edge[1] * edge[1];
         area += turn;
         left |= turn > 0.0;
         right |= turn < 0.0;
@@ -146,10 +136,6 @@ fn polygon(corners: &[[f64; 2]]) -> (f64, f64, f64) {
             longest = square;
         }
     }
-    let inside = left != right;
-    (
-        if inside { nearest } else { -nearest },
-        f64::abs(area),
-        sqrt(longest),
-    )
+    let distance = if left != right { nearest } else { -nearest };
+    (distance, f64::abs(area), sqrt(longest))
 }

@@ -26,19 +26,19 @@ pub struct Tally {
     pub views: u64,
     /// Views that need no rounding, in which nothing may differ.
     pub grid_exact_views: u64,
-    /// Samples of each class, in the order of [`Class::ALL`].
+    /// Samples of each class, in the order of [`Class::all`].
     #[serde(serialize_with = "named")]
-    pub counts: [u64; Class::ALL.len()],
+    pub counts: [u64; Class::COUNT],
     /// The worst samples: bugs first, then those farthest from an outline; at most [`WITNESSES`].
     pub worst: Vec<Witness>,
 }
 
 /// Counts by the names of their classes.
 fn named<S: serde::Serializer>(
-    counts: &[u64; Class::ALL.len()],
+    counts: &[u64; Class::COUNT],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(Class::ALL.iter().map(|c| c.name()).zip(counts))
+    serializer.collect_map(Class::all().map(Class::name).zip(counts))
 }
 
 impl Tally {
@@ -73,16 +73,15 @@ impl Tally {
     }
 
     fn sum(&self, which: fn(Class) -> bool) -> u64 {
-        let of = Class::ALL.iter().zip(self.counts);
-        of.filter(|&(&class, _)| which(class)).map(|(_, n)| n).sum()
+        let of = Class::all().zip(self.counts);
+        of.filter(|&(class, _)| which(class)).map(|(_, n)| n).sum()
     }
 
     /// Explained samples as a share of all; 0 without any.
     pub fn explained_share(&self) -> f64 {
-        if self.pixels == 0 {
-            0.0
-        } else {
-            self.explained() as f64 / self.pixels as f64
+        match self.pixels {
+            0 => 0.0,
+            all => self.explained() as f64 / all as f64,
         }
     }
 
@@ -94,10 +93,7 @@ impl Tally {
 
 /// The distance of the centre from the nearer outline of what is shown.
 fn distance(witness: &Witness) -> u64 {
-    [witness.raster.inside, witness.rays.inside]
-        .into_iter()
-        .flatten()
-        .map(i64::unsigned_abs)
-        .min()
-        .unwrap_or(0)
+    let inside = [witness.raster.inside, witness.rays.inside];
+    let distances = inside.into_iter().flatten().map(i64::unsigned_abs);
+    distances.min().unwrap_or(0)
 }
