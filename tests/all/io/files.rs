@@ -6,7 +6,7 @@ use glam::DVec3;
 use lodmark::{
     encode::atomic,
     io::{self, Encoding, Format},
-    mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, content_sha256, weld},
+    mesh::{Attributes, Channel, ChannelKind, Materials, Mesh, MeshParts, content_sha256, weld},
     num::Precision,
 };
 use proptest::prelude::*;
@@ -17,38 +17,23 @@ use crate::support::{folder, read_model};
 /// Every attribute value of every corner, by channel; NaN as one value.
 pub(crate) fn corner_values(mesh: &Mesh) -> Vec<(ChannelKind, Vec<u64>)> {
     let attributes = mesh.attributes();
-    attributes
-        .channels()
-        .iter()
-        .map(|&channel| {
-            let values = attributes
-                .corners()
-                .iter()
-                .flatten()
-                .flat_map(|&w| attributes.value(channel, w))
-                .map(|x| x.to_bits())
-                .collect();
-            (channel.kind, values)
-        })
-        .collect()
+    let values = |&channel: &Channel| {
+        let wedges = attributes.corners().iter().flatten();
+        let values = wedges.flat_map(|&w| attributes.value(channel, w));
+        (channel.kind, values.map(|x| x.to_bits()).collect())
+    };
+    attributes.channels().iter().map(values).collect()
 }
 
 fn bits(mesh: &Mesh) -> Vec<[u64; 3]> {
-    mesh.positions()
-        .iter()
-        .map(|p| p.to_array().map(f64::to_bits))
-        .collect()
+    let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
+    mesh.positions().iter().map(bits).collect()
 }
 
 fn material_names(mesh: &Mesh) -> Vec<Option<String>> {
-    (0..mesh.triangles().len())
-        .map(|t| {
-            mesh.materials()
-                .names
-                .get(mesh.materials().of(t) as usize)
-                .cloned()
-        })
-        .collect()
+    let materials = mesh.materials();
+    let name = |t| materials.names.get(materials.of(t) as usize).cloned();
+    (0..mesh.triangles().len()).map(name).collect()
 }
 
 #[test]
@@ -60,10 +45,12 @@ fn a_binary_stl_that_begins_with_solid_is_binary() {
     assert_eq!(weld(loaded.mesh).mesh.positions().len(), 4);
 }
 
+fn mesh_of(text: &str) -> Mesh {
+    obj(text).expect("valid").mesh
+}
+
 fn square() -> Mesh {
-    obj(&format!("{SQUARE}f 1 2 3\nf 1 3 4\n"))
-        .expect("valid")
-        .mesh
+    mesh_of(&format!("{SQUARE}f 1 2 3\nf 1 3 4\n"))
 }
 
 #[test]
@@ -81,41 +68,27 @@ fn an_unknown_extension_is_a_usage_error_that_lists_the_known_ones() {
 #[test]
 fn content_wins_over_a_wrong_name_and_says_so() {
     let folder = folder();
-    for encoding in [
-        Encoding::PlyAscii,
-        Encoding::PlyBigEndian,
-        Encoding::StlAscii,
-        Encoding::StlBinary,
-    ] {
+    use Encoding::{PlyAscii, PlyBigEndian, StlAscii, StlBinary};
+    for encoding in [PlyAscii, PlyBigEndian, StlAscii, StlBinary] {
         let (bytes, _) = io::encode(&square(), encoding).expect("writes");
         for name in ["a.obj", "a.bin", "a"] {
             let path = folder.path().join(name);
             fs::write(&path, &bytes).expect("writable");
             let loaded = io::read(&path).expect("reads");
             assert_eq!(loaded.encoding, encoding);
-            assert_eq!(
-                loaded.notes.is_empty(),
-                name != "a.obj",
-                "{:?}",
-                loaded.notes
-            );
+            let notes = loaded.notes;
+            assert_eq!(notes.is_empty(), name != "a.obj", "{notes:?}");
         }
     }
     let path = folder.path().join("a.OBJ");
     fs::write(&path, SQUARE).expect("writable");
     assert_eq!(io::read(&path).expect("reads").encoding, Encoding::Obj);
-    let path = folder.path().join("noise.dat");
-    fs::write(&path, [7; 100]).expect("writable");
-    assert_eq!(io::read(&path).expect_err("noise").exit_code(), 3);
-    let path = folder.path().join("a.glb");
-    fs::write(&path, b"glTF\x02\0\0\0").expect("writable");
-    assert_eq!(io::read(&path).expect_err("cut off").exit_code(), 3);
-    assert_eq!(
-        io::read(&folder.path().join("gone.ply"))
-            .expect_err("gone")
-            .exit_code(),
-        5
-    );
+    let refused = |name: &str| io::read(&folder.path().join(name)).expect_err(name);
+    fs::write(folder.path().join("noise.dat"), [7; 100]).expect("writable");
+    assert_eq!(refused("noise.dat").exit_code(), 3);
+    fs::write(folder.path().join("a.glb"), b"glTF\x02\0\0\0").expect("writable");
+    assert_eq!(refused("a.glb").exit_code(), 3);
+    assert_eq!(refused("gone.ply").exit_code(), 5);
 }
 
 #[test]
@@ -131,10 +104,8 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
     assert_eq!(fs::read(&path).expect("there"), b"old");
     assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 1);
     io::write(&path, &square()).expect("writes");
-    assert_eq!(
-        io::read(&path).expect("reads").mesh.triangles(),
-        square().triangles()
-    );
+    let again = io::read(&path).expect("reads").mesh;
+    assert_eq!(again.triangles(), square().triangles());
     assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 1);
 }
 
@@ -174,10 +145,7 @@ fn a_missing_folder_and_a_folder_in_place_of_the_file_are_io_errors() {
 #[test]
 fn a_link_and_a_device_are_written_through() {
     let folder = folder();
-    let (file, link) = (
-        folder.path().join("file.ply"),
-        folder.path().join("link.ply"),
-    );
+    let [file, link] = ["file.ply", "link.ply"].map(|name| folder.path().join(name));
     fs::write(&file, "old").expect("writable");
     std::os::unix::fs::symlink(&file, &link).expect("links exist");
     io::write(&link, &square()).expect("writes");
@@ -189,37 +157,25 @@ fn a_link_and_a_device_are_written_through() {
 
 #[test]
 fn the_precision_of_text_follows_from_its_digits() {
-    let coarse = obj("v 0 0 0\nv 1 0 0\nv 0.1 0.3333333333333333 0\nf 1 2 3\n")
-        .expect("valid")
-        .mesh;
+    let coarse = mesh_of("v 0 0 0\nv 1 0 0\nv 0.1 0.3333333333333333 0\nf 1 2 3\n");
     assert_eq!(coarse.precision(), Precision::F32);
     assert_eq!(bits(&coarse)[2][0], f64::from(0.1_f32).to_bits());
-    let far = obj("v 500000.001 0 0\nv 500001.002 0 0\nv 500000 1 0\nf 1 2 3\n")
-        .expect("valid")
-        .mesh;
+    let far = mesh_of("v 500000.001 0 0\nv 500001.002 0 0\nv 500000 1 0\nf 1 2 3\n");
     assert_eq!(far.precision(), Precision::F64);
     assert_eq!(bits(&far)[0][0], 500_000.001_f64.to_bits());
-    let huge = obj("v 1e300 0 0\nv 0 1e300 0\nv 0 0 1e300\nf 1 2 3\n")
-        .expect("valid")
-        .mesh;
+    let huge = mesh_of("v 1e300 0 0\nv 0 1e300 0\nv 0 0 1e300\nf 1 2 3\n");
     assert_eq!(huge.precision(), Precision::F64);
     for size in ["1e30", "1e-30"] {
-        let mesh = obj(&format!(
-            "v {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 2 3\n"
-        ))
-        .expect("valid")
-        .mesh;
-        assert_eq!(mesh.precision(), Precision::F32, "{size}");
+        let text = format!("v {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 2 3\n");
+        assert_eq!(mesh_of(&text).precision(), Precision::F32, "{size}");
     }
 }
 
 #[test]
 fn what_a_format_cannot_keep_is_said() {
-    let mesh = obj(&format!(
+    let mesh = mesh_of(&format!(
         "{SQUARE}vt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\nusemtl m\nf 1/1/1 2/1/1 3/1/1\nf 1/2/2 3/1/1 4/1/1\n"
-    ))
-    .expect("valid")
-    .mesh;
+    ));
     let notes = |encoding| io::encode(&mesh, encoding).expect("writes").1.join("; ");
     assert_eq!(notes(Encoding::Obj), "");
     assert!(notes(Encoding::PlyAscii).contains("cannot keep materials"));
@@ -232,25 +188,17 @@ fn what_a_format_cannot_keep_is_said() {
     })
     .expect("valid");
     assert!(io::encode(&wide, Encoding::StlAscii).expect("writes").1[0].contains("32-bit"));
-    let huge = obj("v 1e300 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n")
-        .expect("valid")
-        .mesh;
-    assert_eq!(
-        io::encode(&huge, Encoding::StlBinary)
-            .expect_err("too large")
-            .exit_code(),
-        4
-    );
+    let huge = mesh_of("v 1e300 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");
+    let refused = io::encode(&huge, Encoding::StlBinary).expect_err("too large");
+    assert_eq!(refused.exit_code(), 4);
 }
 
 #[test]
 fn header_lines_of_ply_may_end_as_on_any_system() {
     let (bytes, _) = io::encode(&square(), Encoding::PlyLittleEndian).expect("writes");
-    let body = bytes
-        .windows(11)
-        .position(|w| w == b"end_header\n")
-        .expect("a header")
-        + 11;
+    let mut windows = bytes.windows(11);
+    let end = windows.position(|w| w == b"end_header\n");
+    let body = end.expect("a header") + 11;
     let header = String::from_utf8(bytes[..body].to_vec()).expect("ASCII");
     for end in ["\r\n", "\r"] {
         // A first coordinate whose first byte is a line feed must not be taken for part of the header.
@@ -259,11 +207,8 @@ fn header_lines_of_ply_may_end_as_on_any_system() {
         let first = file.len() - (bytes.len() - body);
         file[first] = b'\n';
         let mesh = io::read_bytes(Format::Ply, &file, "-").expect("reads").mesh;
-        assert_eq!(
-            bits(&mesh)[0][0],
-            f64::from(f32::from_bits(10)).to_bits(),
-            "{end:?}"
-        );
+        let line_feed = f64::from(f32::from_bits(10)).to_bits();
+        assert_eq!(bits(&mesh)[0][0], line_feed, "{end:?}");
         assert_eq!(mesh.triangles(), square().triangles());
     }
 }
@@ -290,23 +235,15 @@ fn a_summary_tells_everything_a_file_holds() {
 #[test]
 fn triangles_without_a_material_after_others_do_not_inherit_one() {
     let mut parts = square().into_parts();
-    parts.materials = Materials {
-        names: vec!["none".into()],
-        of_triangle: vec![0, Materials::NONE],
-        libraries: Vec::new(),
-        asset: None,
-    };
+    parts.materials.names = vec!["none".into()];
+    parts.materials.of_triangle = vec![0, Materials::NONE];
     let mesh = Mesh::new(parts).expect("valid");
     let (bytes, notes) = io::encode(&mesh, Encoding::Obj).expect("writes");
-    assert!(
-        notes[0].contains("1 triangles without one get the material `none_`"),
-        "{notes:?}"
-    );
+    let told = "1 triangles without one get the material `none_`";
+    assert!(notes[0].contains(told), "{notes:?}");
     let again = io::read_bytes(Format::Obj, &bytes, "-").expect("reads");
-    assert_eq!(
-        material_names(&again.mesh),
-        [Some("none".into()), Some("none_".into())]
-    );
+    let expected = ["none", "none_"].map(|name| Some(name.into()));
+    assert_eq!(material_names(&again.mesh), expected);
 }
 
 /// A float of any size, now and then a special one.
@@ -314,14 +251,12 @@ fn coordinate(precision: Precision) -> BoxedStrategy<f64> {
     let finite = any::<f64>().prop_filter("finite", |x| x.is_finite());
     match precision {
         Precision::F64 => prop_oneof![finite, Just(-0.0), -1.0..1.0].boxed(),
-        Precision::F32 => prop_oneof![
-            any::<f32>()
-                .prop_filter("finite", |x| x.is_finite())
-                .prop_map(f64::from),
-            (-1.0_f32..1.0).prop_map(f64::from),
-            Just(-0.0),
-        ]
-        .boxed(),
+        Precision::F32 => {
+            let finite = any::<f32>().prop_filter("finite", |x| x.is_finite());
+            prop_oneof![finite, -1.0_f32..1.0, Just(-0.0)]
+                .prop_map(f64::from)
+                .boxed()
+        }
     }
 }
 
@@ -338,7 +273,7 @@ fn meshes() -> impl Strategy<Value = Mesh> {
                 numbers(3 * vertices),
                 numbers(2 * vertices + 6 * triangles),
                 prop::collection::vec(any::<u8>(), 3 * vertices),
-                prop::collection::vec(prop_oneof![Just("red"), Just("a b"), Just("#1")], triangles),
+                prop::collection::vec(0..3_u32, triangles),
             )
                 .prop_map(move |(p, triangles, n, t, c, names)| {
                     let mut kinds = Vec::new();
@@ -352,38 +287,24 @@ fn meshes() -> impl Strategy<Value = Mesh> {
                             values.extend(&n[3 * v..3 * v + 3]);
                         }
                         if uvs {
-                            let at = if seams {
-                                2 * (vertices + corner)
-                            } else {
-                                2 * v
-                            };
-                            values.extend(&t[at..at + 2]);
+                            let row = if seams { vertices + corner } else { v };
+                            values.extend(&t[2 * row..2 * row + 2]);
                         }
                         if colors {
-                            values.extend((3 * v..3 * v + 3).map(|i| {
-                                if bytes {
-                                    precision.round(f64::from(c[i]) / 255.0)
-                                } else {
-                                    n[i]
-                                }
-                            }));
+                            let level = |i: usize| precision.round(f64::from(c[i]) / 255.0);
+                            let color = |i| if bytes { level(i) } else { n[i] };
+                            values.extend((3 * v..3 * v + 3).map(color));
                         }
                     }
-                    let corners = (0..triangles.len() as u32)
-                        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-                        .collect();
-                    let all = ["red", "a b", "#1"];
+                    let corners = (0..triangles.len() as u32).map(|i| [0, 1, 2].map(|k| 3 * i + k));
+                    let corners = corners.collect();
+                    let all = ["red", "a b", "#1"].map(String::from).to_vec();
                     Mesh::new(MeshParts {
                         positions: p.chunks(3).map(DVec3::from_slice).collect(),
                         attributes: Attributes::new(&kinds, values, corners).expect("fits"),
                         materials: Materials {
-                            names: all.map(String::from).to_vec(),
-                            of_triangle: names
-                                .iter()
-                                .map(|name| {
-                                    all.iter().position(|a| a == name).expect("one of all") as u32
-                                })
-                                .collect(),
+                            names: all,
+                            of_triangle: names,
                             libraries: vec!["lib one.mtl".into()],
                             asset: None,
                         },
@@ -465,38 +386,23 @@ fn a_textured_model_is_what_tobj_alone_makes_of_it() {
         triangulate: true,
         ..tobj::LoadOptions::default()
     };
-    let (models, _) = tobj::load_obj_buf(&mut &bytes[..], &options, |_| {
-        Err(tobj::LoadError::OpenFileFailed)
-    })
-    .expect("reads");
+    let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+    let (models, _) = tobj::load_obj_buf(&mut &bytes[..], &options, no_library).expect("reads");
     let plain = &models[0].mesh;
     let attributes = loaded.mesh.attributes();
-    let uv = attributes
-        .channel(ChannelKind::TexCoord(0))
-        .expect("textured");
+    let uv = attributes.channel(ChannelKind::TexCoord(0));
+    let uv = uv.expect("textured");
     assert_eq!(plain.indices.len(), 3 * loaded.mesh.triangles().len());
-    for (t, (corners, wedges)) in loaded
-        .mesh
-        .triangles()
-        .iter()
-        .zip(attributes.corners())
-        .enumerate()
-    {
-        for c in 0..3 {
-            let (v, vt) = (
-                plain.indices[3 * t + c] as usize,
-                plain.texcoord_indices[3 * t + c] as usize,
-            );
-            let p = loaded.mesh.positions()[corners[c] as usize].to_array();
-            assert_eq!(
-                p.map(|x| (x as f32).to_bits()),
-                [0, 1, 2].map(|i| (plain.positions[3 * v + i] as f32).to_bits())
-            );
-            let q = attributes.value(uv, wedges[c]);
-            assert_eq!(
-                [0, 1].map(|i| (q[i] as f32).to_bits()),
-                [0, 1].map(|i| (plain.texcoords[2 * vt + i] as f32).to_bits())
-            );
-        }
+    let bits = |x: f64| (x as f32).to_bits();
+    let corners = loaded.mesh.triangles().as_flattened().iter();
+    let wedges = attributes.corners().as_flattened();
+    for (at, (&corner, &wedge)) in corners.zip(wedges).enumerate() {
+        let [v, vt] = [plain.indices[at], plain.texcoord_indices[at]].map(|i| i as usize);
+        let p = loaded.mesh.positions()[corner as usize].to_array();
+        let expected = [0, 1, 2].map(|i| bits(plain.positions[3 * v + i].into()));
+        assert_eq!(p.map(bits), expected);
+        let q = attributes.value(uv, wedge);
+        let expected = [0, 1].map(|i| bits(plain.texcoords[2 * vt + i].into()));
+        assert_eq!([q[0], q[1]].map(bits), expected);
     }
 }

@@ -27,6 +27,15 @@ fn message(result: Result<io::Loaded, Error>) -> String {
     error.to_string()
 }
 
+/// Holds the notes of a reader to parts that they must have.
+#[track_caller]
+fn require_notes(loaded: &io::Loaded, parts: &[&str]) {
+    let notes = &loaded.notes;
+    for part in parts {
+        assert!(notes.iter().any(|n| n.contains(part)), "{part}: {notes:?}");
+    }
+}
+
 pub(crate) const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
@@ -52,12 +61,8 @@ fn vertices_that_no_face_uses_and_their_order_are_kept() {
 
 #[test]
 fn a_mesh_without_anything_is_written_and_read() {
-    for encoding in [
-        Encoding::Obj,
-        Encoding::PlyAscii,
-        Encoding::StlAscii,
-        Encoding::StlBinary,
-    ] {
+    use Encoding::{Obj, PlyAscii, StlAscii, StlBinary};
+    for encoding in [Obj, PlyAscii, StlAscii, StlBinary] {
         let (bytes, _) = io::encode(&Mesh::default(), encoding).expect("writes");
         let loaded = io::read_bytes(encoding.format(), &bytes, "-").expect("reads");
         assert_eq!(loaded.mesh, Mesh::default(), "{encoding:?}");
@@ -99,18 +104,11 @@ fn corners_without_texture_coordinates_have_none_of_their_neighbours() {
     let present = |channel, t: usize| {
         attributes.corners()[t].map(|w| !attributes.value(channel, w)[0].is_nan())
     };
-    assert_eq!(
-        [0, 1, 2].map(|t| present(uv, t)),
-        [[true; 3], [false; 3], [false; 3]]
-    );
-    assert_eq!(
-        [0, 1, 2].map(|t| present(normal, t)),
-        [[true; 3], [false; 3], [true; 3]]
-    );
-    assert_eq!(
-        attributes.value(uv, attributes.corners()[0][2]),
-        [0.25, 0.5]
-    );
+    let faces = |channel| [0, 1, 2].map(|t| present(channel, t));
+    assert_eq!(faces(uv), [[true; 3], [false; 3], [false; 3]]);
+    assert_eq!(faces(normal), [[true; 3], [false; 3], [true; 3]]);
+    let last = attributes.corners()[0][2];
+    assert_eq!(attributes.value(uv, last), [0.25, 0.5]);
 }
 
 #[test]
@@ -131,20 +129,9 @@ fn lines_points_and_slivers_are_told_of() {
     .expect("valid");
     assert_eq!(loaded.mesh.triangles(), [[0, 1, 2]]);
     assert!(loaded.mesh.attributes().is_empty());
-    for told in [
-        "2 faces with fewer",
-        "1 lines `l`",
-        "1 lines `p`",
-        "1 lines `s`",
-        "1 lines `vp`",
-        "third texture",
-    ] {
-        assert!(
-            loaded.notes.iter().any(|n| n.contains(told)),
-            "{told}: {:?}",
-            loaded.notes
-        );
-    }
+    let lines = ["1 lines `l`", "1 lines `p`", "1 lines `s`", "1 lines `vp`"];
+    require_notes(&loaded, &lines);
+    require_notes(&loaded, &["2 faces with fewer", "third texture"]);
 }
 
 #[test]
@@ -172,61 +159,37 @@ fn text_that_is_not_utf8_is_no_obstacle() {
 
 #[test]
 fn obj_errors_name_their_line() {
+    // The second line of a file.
+    for (line, expected) in [
+        ("v 1 x 0", "found `x`; expected a number"),
+        ("v 0 0 nan", "found `nan`; expected a finite number"),
+        ("v inf 0 0", "found `inf`; expected a finite number"),
+        ("f 1 1 2", "a corner names `v` 2, but there are 1"),
+        ("f 1 1 0", "a corner names `v` 0"),
+        ("f -2 1 1", "a corner names `v` -2, and 1 come before"),
+        ("f 1/1 1/1 1/1", "a corner names `vt` 1, but there are 0"),
+        ("f 1/-5 1 1", "a corner names `vt` -5"),
+        ("f 1//9223372036854775807 1 1", "a corner names `vn`"),
+        ("f 1/1/1/1 1 1", "found `1/1/1/1`; expected a corner"),
+        ("vt", "a texture coordinate without numbers"),
+        ("vn 1 0", "expected a normal of three numbers"),
+        ("vn 1 0 q", "found `q`; expected a number"),
+        ("v 0 0 0 1 1 red", "found `red`; expected a colour value"),
+        ("\0", "a zero byte"),
+    ] {
+        let said = message(obj(&format!("v 0 0 0\n{line}\n")));
+        let expected = format!("test.obj: line 2: {expected}");
+        assert!(said.starts_with(&expected), "{line:?}: {said}");
+    }
     for (text, expected) in [
-        ("v 0 0 0\nv 1 x 0\n", "line 2: found `x`; expected a number"),
         ("v 0 0\n", "line 1: a vertex of 2 numbers"),
-        (
-            "v 0 0 nan\n",
-            "line 1: found `nan`; expected a finite number",
-        ),
-        (
-            "v 0 0 0\nv inf 0 0\n",
-            "line 2: found `inf`; expected a finite number",
-        ),
-        (
-            "v 0 0 0\nf 1 1 2\n",
-            "line 2: a corner names `v` 2, but there are 1",
-        ),
-        ("v 0 0 0\nf 1 1 0\n", "line 2: a corner names `v` 0"),
-        (
-            "v 0 0 0\nf -2 1 1\n",
-            "line 2: a corner names `v` -2, and 1 come before",
-        ),
-        (
-            "v 0 0 0\nf 1/1 1/1 1/1\n",
-            "line 2: a corner names `vt` 1, but there are 0",
-        ),
-        ("v 0 0 0\nf 1/-5 1 1\n", "line 2: a corner names `vt` -5"),
-        (
-            "v 0 0 0\nf 1//9223372036854775807 1 1\n",
-            "line 2: a corner names `vn`",
-        ),
+        ("v 0 0 nan\n", "line 1: found `nan`"),
+        ("v 0 0 0 1 1 red\n", "line 1: found `red`"),
         (
             "v 0 0 0\n\nf 1 1/a 1\n",
             "line 3: found `1/a`; expected a corner",
         ),
-        (
-            "v 0 0 0\nf 1/1/1/1 1 1\n",
-            "line 2: found `1/1/1/1`; expected a corner",
-        ),
-        (
-            "v 0 0 0\nvt\n",
-            "line 2: a texture coordinate without numbers",
-        ),
-        (
-            "v 0 0 0\nvn 1 0\n",
-            "line 2: expected a normal of three numbers",
-        ),
-        (
-            "v 0 0 0\nvn 1 0 q\n",
-            "line 2: found `q`; expected a number",
-        ),
-        (
-            "v 0 0 0 1 1 red\n",
-            "line 1: found `red`; expected a colour value",
-        ),
         ("hello\n", "no line begins with `v`"),
-        ("v 0 0 0\n\0\n", "line 2: a zero byte"),
     ] {
         let said = message(obj(text));
         assert!(said.contains(expected), "{text:?}: {said}");
@@ -239,44 +202,37 @@ const HEADER: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\
 
 #[test]
 fn ply_errors_name_their_line() {
-    for (body, expected) in [
-        (
-            "0 0 0\n1 0 0\n0 b 0\n3 0 1 2\n",
-            "line 12: found `b`; expected `y` of vertex 2 of 3",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
-            "line 13: face 0 names vertex 3; expected a number from 0 to 2",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n",
-            "line 13: face 0 names vertex -1",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n",
-            "line 13: face 0 names vertex 1.5",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
-            "the file ends; expected `vertex_indices` of face 0",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1 0\n-3 0 1\n",
-            "line 13: found a list of -3 numbers",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n",
-            "line 12: vertex 2 is (0, NaN, 0)",
-        ),
-        (
-            "0 0 0\n1 0 0\n0 1e39 0\n3 0 1 2\n",
-            "line 12: vertex 2 is (0, inf, 0)",
-        ),
-        ("0 0 0\n1 0", "3 items of `vertex` need at least 18 bytes"),
+    let said_of = |vertex: &str, face: &str| {
+        message(ply(&format!("{HEADER}0 0 0\n1 0 0\n{vertex}\n{face}\n")))
+    };
+    for (vertex, expected) in [
+        ("0 b 0", "found `b`; expected `y` of vertex 2 of 3"),
+        ("0 nan 0", "vertex 2 is (0, NaN, 0)"),
+        ("0 1e39 0", "vertex 2 is (0, inf, 0)"),
     ] {
-        let said = message(ply(&format!("{HEADER}{body}")));
-        assert!(said.contains(expected), "{body:?}: {said}");
+        let said = said_of(vertex, "3 0 1 2");
+        let expected = format!("line 12: {expected}");
+        assert!(said.contains(&expected), "{vertex}: {said}");
     }
+    for (face, expected) in [
+        (
+            "3 0 1 3",
+            "face 0 names vertex 3; expected a number from 0 to 2",
+        ),
+        ("3 0 1 -1", "face 0 names vertex -1"),
+        ("3 0 1 1.5", "face 0 names vertex 1.5"),
+        ("-3 0 1", "found a list of -3 numbers"),
+    ] {
+        let said = said_of("0 1 0", face);
+        let expected = format!("line 13: {expected}");
+        assert!(said.contains(&expected), "{face}: {said}");
+    }
+    let said = said_of("0 1 0", "3 0 1");
+    let expected = "the file ends; expected `vertex_indices` of face 0";
+    assert!(said.contains(expected), "{said}");
+    let said = message(ply(&format!("{HEADER}0 0 0\n1 0")));
+    let expected = "3 items of `vertex` need at least 18 bytes";
+    assert!(said.contains(expected), "{said}");
 }
 
 #[test]
@@ -335,20 +291,8 @@ fn unknown_ply_elements_and_properties_are_skipped_and_told_of() {
     .expect("valid");
     assert_eq!(loaded.mesh.triangles(), [[0, 1, 2]]);
     assert_eq!(loaded.mesh.positions()[2], DVec3::Y);
-    for told in [
-        "`camera`",
-        "`confidence`",
-        "`l`",
-        "`red`",
-        "`nothing`",
-        "fewer than three corners",
-    ] {
-        assert!(
-            loaded.notes.iter().any(|n| n.contains(told)),
-            "{told}: {:?}",
-            loaded.notes
-        );
-    }
+    require_notes(&loaded, &["`camera`", "`confidence`", "`l`", "`red`"]);
+    require_notes(&loaded, &["`nothing`", "fewer than three corners"]);
 }
 
 #[test]
@@ -364,19 +308,11 @@ fn ply_attributes_are_found_under_all_their_names() {
         .expect("valid");
         let attributes = loaded.mesh.attributes();
         let kinds: Vec<ChannelKind> = attributes.channels().iter().map(|c| c.kind).collect();
-        assert_eq!(
-            kinds,
-            [
-                ChannelKind::Normal,
-                ChannelKind::TexCoord(0),
-                ChannelKind::ColorAlpha
-            ]
-        );
+        use ChannelKind::{ColorAlpha, Normal, TexCoord};
+        assert_eq!(kinds, [Normal, TexCoord(0), ColorAlpha]);
         let fifth = f64::from(51.0_f32 / 255.0_f32);
-        assert_eq!(
-            attributes.row(attributes.corners()[0][2]),
-            [0.0, 0.0, 1.0, 0.5, 0.25, 0.0, fifth, 1.0, 0.0]
-        );
+        let row = attributes.row(attributes.corners()[0][2]);
+        assert_eq!(row, [0.0, 0.0, 1.0, 0.5, 0.25, 0.0, fifth, 1.0, 0.0]);
     }
 }
 
@@ -389,48 +325,30 @@ fn corner_texture_coordinates_make_a_seam() {
          3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0.5 0.5 1 1 0 1\n4 0 1 2 3 0\n";
     let loaded = ply(text).expect("valid");
     let attributes = loaded.mesh.attributes();
-    assert_eq!(
-        attributes.corners()[0][2],
-        attributes.corners()[1][1],
-        "equal uv at vertex 2"
-    );
-    assert_ne!(
-        attributes.corners()[0][0],
-        attributes.corners()[1][0],
-        "seam at vertex 0"
-    );
+    let [first, second] = [0, 1].map(|t| attributes.corners()[t]);
+    assert_eq!(first[2], second[1], "equal uv at vertex 2");
+    assert_ne!(first[0], second[0], "seam at vertex 0");
     let uv = attributes.channel(ChannelKind::TexCoord(0)).expect("uv");
     assert!(attributes.value(uv, attributes.corners()[2][0])[0].is_nan());
     let (bytes, _) = io::encode(&loaded.mesh, Encoding::PlyBigEndian).expect("writes");
     let again = io::read_bytes(Format::Ply, &bytes, "-").expect("reads");
     assert_eq!(corner_values(&again.mesh), corner_values(&loaded.mesh));
-    assert!(
-        message(ply(&text.replace("6 0 0 1 0 1 1", "5 0 0 1 0 1")))
-            .contains("3 corners and 5 texture coordinates")
-    );
+    let said = message(ply(&text.replace("6 0 0 1 0 1 1", "5 0 0 1 0 1")));
+    assert!(said.contains("3 corners and 5 texture coordinates"));
 }
 
 #[test]
 fn stl_errors_name_their_line() {
     let text = "solid a b c\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a b c\n";
     assert_eq!(stl(text).expect("valid").mesh.triangles(), [[0, 1, 2]]);
-    assert_eq!(
-        stl(&text.to_uppercase().replace("1 0 0", "1e0 -0 0"))
-            .expect("valid")
-            .encoding,
-        Encoding::StlAscii
-    );
+    let loaded = stl(&text.to_uppercase().replace("1 0 0", "1e0 -0 0"));
+    assert_eq!(loaded.expect("valid").encoding, Encoding::StlAscii);
+    for number in ["q", "inf"] {
+        let said = message(stl(&text.replace("1 0 0", &format!("1 0 {number}"))));
+        let expected = format!("line 5: found `{number}`; expected a finite coordinate");
+        assert!(said.contains(&expected), "{said}");
+    }
     for (from, to, expected) in [
-        (
-            "vertex 1 0 0",
-            "vertex 1 0 q",
-            "line 5: found `q`; expected a finite coordinate",
-        ),
-        (
-            "vertex 1 0 0",
-            "vertex 1 0 inf",
-            "line 5: found `inf`; expected a finite coordinate",
-        ),
         ("vertex 1 0 0\n", "", "line 7: this facet has 2 corners"),
         ("outer", "inner", "line 3: found `inner`; expected `outer`"),
         (

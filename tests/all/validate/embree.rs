@@ -48,8 +48,8 @@ fn write_views(exchange: &Path, set: &ViewSet) {
 fn first_of_its_place(mesh: &Mesh) -> Vec<u32> {
     let mut first = BTreeMap::new();
     let place = |(t, corners): (u32, &[u32; 3])| {
-        let mut corners =
-            corners.map(|v| mesh.positions()[v as usize].to_array().map(f64::to_bits));
+        let bits = |v: u32| mesh.positions()[v as usize].to_array().map(f64::to_bits);
+        let mut corners = corners.map(bits);
         corners.sort_unstable();
         *first.entry(corners).or_insert(t)
     };
@@ -77,12 +77,8 @@ fn against_embree(packages: &Path, mesh: &Mesh, set: &ViewSet) -> (Tally, f64) {
             Eye::Point(_) => view.near * view.far / (view.far - z * (view.far - view.near)),
             Eye::Axis(_) => view.near + z * (view.far - view.near),
         };
-        for ((key, &id), &z) in cast
-            .values_mut()
-            .iter_mut()
-            .zip(ids.values())
-            .zip(depths.values())
-        {
+        let keys = cast.values_mut().iter_mut().zip(ids.values());
+        for ((key, &id), &z) in keys.zip(depths.values()) {
             if id == 0 {
                 *key = SampleKey::BACKGROUND;
             } else if !key.is_background() && face[key.id() as usize] == face[id as usize - 1] {
@@ -149,13 +145,8 @@ fn embree_finds_a_planted_bug() {
         return;
     };
     // Half a pixel is a shift of the views that only Embree is told of.
-    let (mesh, set) = framed(
-        &generate::torus(1.0, 0.4, 24, 12),
-        1,
-        64,
-        SubpixelBits::Sixteen,
-        Projection::Perspective,
-    );
+    let (torus, bits) = (generate::torus(1.0, 0.4, 24, 12), SubpixelBits::Sixteen);
+    let (mesh, set) = framed(&torus, 1, 64, bits, Projection::Perspective);
     let dir = folder();
     let mut moved = set.clone();
     let (offset, row) = (moved.views[0].matrix[3], &mut moved.views[0].matrix[0]);
@@ -175,14 +166,9 @@ fn embree_finds_a_planted_bug() {
         };
     }
     let caster = RayCaster::new(&mesh);
-    let found = caster
-        .classify(&set, 0, [&drawn, &cast], &Silent)
-        .expect("one size");
-    let wrong = found
-        .witnesses
-        .iter()
-        .filter(|w| w.class == Class::Rays)
-        .count();
+    let found = caster.classify(&set, 0, [&drawn, &cast], &Silent);
+    let witnesses = found.expect("one size").witnesses;
+    let wrong = witnesses.iter().filter(|w| w.class == Class::Rays).count();
     assert!(wrong > 100, "{wrong}");
 }
 
@@ -233,18 +219,23 @@ fn in_frame(mesh: &Mesh) -> Mesh {
     mesh.enter_frame(frame_of(mesh)).in_frame_units().clone()
 }
 
+/// The meshes whose visibility is measured, in their frames.
+fn measured_meshes() -> Vec<(&'static str, Mesh)> {
+    let mut meshes = vec![("tori", in_frame(&generate::interlocking_tori(64, 32)))];
+    meshes.extend(model("bunny.ply").map(|mesh| ("bunny", in_frame(&mesh))));
+    if full() {
+        meshes.extend(model("dragon.ply").map(|mesh| ("dragon", in_frame(&mesh))));
+    }
+    meshes
+}
+
 #[test]
 fn the_paper_measure_is_that_of_the_same_rule_on_what_embree_casts() {
     let Some(packages) = embree() else {
         return;
     };
     let (octahedron, size) = if full() { (2, 480) } else { (1, 200) };
-    let mut meshes = vec![("tori", in_frame(&generate::interlocking_tori(64, 32)))];
-    meshes.extend(model("bunny.ply").map(|mesh| ("bunny", in_frame(&mesh))));
-    if full() {
-        meshes.extend(model("dragon.ply").map(|mesh| ("dragon", in_frame(&mesh))));
-    }
-    for (name, mesh) in meshes {
+    for (name, mesh) in measured_meshes() {
         let octahedron = if name == "dragon" { 1 } else { octahedron };
         // Embree is given whole triangles.
         let options = MeasureOptions {
@@ -256,16 +247,11 @@ fn the_paper_measure_is_that_of_the_same_rule_on_what_embree_casts() {
         let theirs = by_paper(packages, &mesh, &options);
         let ours = visibility::measure(&mesh, &options, &Silent).expect("measures");
         let theirs = mean(&mesh, &theirs, &theirs);
+        let (ours, cameras) = (ours.mesh(), options.cameras());
         say(&format!(
-            "{name}: V(M) by the rule of the paper, {} cameras of {size}: {:.4}, Embree {theirs:.4}",
-            options.cameras(),
-            ours.mesh()
+            "{name}: V(M) by the rule of the paper, {cameras} cameras of {size}: {ours:.4}, Embree {theirs:.4}"
         ));
-        assert!(
-            (ours.mesh() - theirs).abs() <= 0.005,
-            "{name}: {} {theirs}",
-            ours.mesh()
-        );
+        assert!((ours - theirs).abs() <= 0.005, "{name}: {ours} {theirs}");
     }
 }
 
@@ -274,24 +260,16 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
     let Some(packages) = embree() else {
         return;
     };
-    let mut meshes = vec![("tori", in_frame(&generate::interlocking_tori(64, 32)))];
-    meshes.extend(model("bunny.ply").map(|mesh| ("bunny", in_frame(&mesh))));
-    if full() {
-        meshes.extend(model("dragon.ply").map(|mesh| ("dragon", in_frame(&mesh))));
-    }
-    for (name, mesh) in meshes {
-        let step = if full() {
-            1
-        } else {
-            mesh.triangles().len() / 4_000
-        };
+    for (name, mesh) in measured_meshes() {
+        let some = mesh.triangles().len() / 4_000;
+        let step = if full() { 1 } else { some };
         // The truth: shadow rays in the directions of many cameras.
         let k = if full() { 3 } else { 2 };
         let shadows = by_shadows(packages, &mesh, &sets::octahedron(k), step.max(1));
         let truth = mean(&mesh, &shadows, &shadows);
+        let count = sets::octahedron(k).len();
         say(&format!(
-            "{name}: V(M) by shadow rays, {} directions: {truth:.4}",
-            sets::octahedron(k).len()
+            "{name}: V(M) by shadow rays, {count} directions: {truth:.4}"
         ));
         let (coarse, fine) = match (full(), name) {
             (true, _) => (&[(1, 120), (2, 240)][..], (3, 480)),
@@ -308,26 +286,19 @@ fn the_measure_approaches_that_of_shadow_rays_as_views_and_pixels_grow() {
             let found = visibility::measure(&mesh, &options, &Silent).expect("measures");
             let ours = mean(&mesh, found.triangles(), &shadows);
             // Over triangles, so that too much here does not make up for too little there.
-            let off: Vec<f64> = found
-                .triangles()
-                .iter()
-                .zip(&shadows)
-                .map(|(ours, theirs)| (ours - theirs).abs())
-                .collect();
+            let pairs = found.triangles().iter().zip(&shadows);
+            let off: Vec<f64> = pairs.map(|(a, b)| (a - b).abs()).collect();
             let off = mean(&mesh, &off, &shadows);
+            let cameras = options.cameras();
             say(&format!(
-                "{name}: {} cameras of {size}: {ours:.4}, mean difference of triangles {off:.4}",
-                options.cameras()
+                "{name}: {cameras} cameras of {size}: {ours:.4}, mean difference of triangles {off:.4}"
             ));
             assert!(off < before, "{name}: {off} after {before}");
             before = off;
             if (octahedron, size) == fine {
                 // 66 directions along the axes are not those of the cameras.
-                let limit = if full() || name == "bunny" {
-                    0.02
-                } else {
-                    0.03
-                };
+                let strict = full() || name == "bunny";
+                let limit = if strict { 0.02 } else { 0.03 };
                 assert!((ours - truth).abs() <= limit, "{name}: {ours} {truth}");
             }
         }

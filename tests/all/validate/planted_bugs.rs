@@ -12,16 +12,15 @@ use lodmark::{
 
 use crate::{
     support::scene_of,
-    validate::rays::{framed, grid_set, of_doubles, soup_of, tally, two_layers},
+    validate::rays::{framed, grid_set, layer, of_doubles, soup_of, tally, two_layers},
 };
 
 /// Squares of `step` pixels whose corners are pixel centres, every fourth triangle a second time.
 fn tiles(step: usize) -> Mesh {
     let at = |i: usize| (i * step) as f64 - 12.5;
     let (side, mut triangles) = (24 / step + 1, Vec::new());
-    let positions = (0..side * side)
-        .map(|k| DVec3::new(at(k % side), at(k / side), ((k * 7) % 5) as f64 / 8.0))
-        .collect();
+    let corner = |k| DVec3::new(at(k % side), at(k / side), ((k * 7) % 5) as f64 / 8.0);
+    let positions = (0..side * side).map(corner).collect();
     for y in 1..side {
         for x in 1..side {
             let v = |dx: usize, dy: usize| ((y - dy) * side + x - dx) as u32;
@@ -72,29 +71,25 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<SampleKey> {
         ids[ids.len() / 2] as usize
     });
     let mut keys = Grid::filled(set.width, set.height, u64::MAX);
-    let screen: Vec<[i128; 3]> = mesh
-        .positions()
-        .iter()
-        .map(|p| {
-            let [x, y, z, w] = view
-                .matrix
-                .map(|m| ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3]);
-            let mut column = (x / w * 0.5 + 0.5) * width;
-            let mut row = (0.5 - y / w * 0.5) * height;
-            match bug {
-                Bug::HalfPixelShift => column += 0.5,
-                Bug::MirroredY => row = height - row,
-                _ => {}
-            }
-            let [fine, coarse] = match bug {
-                Bug::FourBitSnapping => [4, bits - 4],
-                _ => [bits, 0],
-            };
-            let snap = |v: f64| ((v * f64::from(1 << fine)).round_ties_even() as i128) << coarse;
-            let depth = (z / w * 4_294_967_296.0).floor();
-            [snap(column), snap(row), depth as i128]
-        })
-        .collect();
+    let place = |p: &DVec3| {
+        let row = |m: [f64; 4]| ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+        let [x, y, z, w] = view.matrix.map(row);
+        let mut column = (x / w * 0.5 + 0.5) * width;
+        let mut row = (0.5 - y / w * 0.5) * height;
+        match bug {
+            Bug::HalfPixelShift => column += 0.5,
+            Bug::MirroredY => row = height - row,
+            _ => {}
+        }
+        let [fine, coarse] = match bug {
+            Bug::FourBitSnapping => [4, bits - 4],
+            _ => [bits, 0],
+        };
+        let snap = |v: f64| ((v * f64::from(1 << fine)).round_ties_even() as i128) << coarse;
+        let depth = (z / w * 4_294_967_296.0).floor();
+        [snap(column), snap(row), depth as i128]
+    };
+    let screen: Vec<[i128; 3]> = mesh.positions().iter().map(place).collect();
     for (t, corners) in mesh.triangles().iter().enumerate() {
         if left_out == Some(t) {
             continue;
@@ -125,14 +120,12 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<SampleKey> {
                 continue;
             }
             let weights = [cross(p, b, c), cross(a, p, c), cross(a, b, p)];
-            let covers = [[b, c], [c, a], [a, b]]
-                .iter()
-                .zip(weights)
-                .all(|([u, v], e)| {
-                    let (dx, dy) = (v[0] - u[0], v[1] - u[1]);
-                    let owned = dy < 0 || (dy == 0 && dx > 0) || bug == Bug::DroppedFillRule;
-                    e > 0 || (e == 0 && owned)
-                });
+            let mut edges = [[b, c], [c, a], [a, b]].iter().zip(weights);
+            let covers = edges.all(|([u, v], e)| {
+                let (dx, dy) = (v[0] - u[0], v[1] - u[1]);
+                let owned = dy < 0 || (dy == 0 && dx > 0) || bug == Bug::DroppedFillRule;
+                e > 0 || (e == 0 && owned)
+            });
             if !covers {
                 continue;
             }
@@ -154,13 +147,8 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<SampleKey> {
 #[test]
 fn the_rasterizer_for_planted_bugs_has_none_of_its_own() {
     let sixteen = SubpixelBits::Sixteen;
-    let (torus, views) = framed(
-        &generate::torus(1.0, 0.4, 24, 12),
-        2,
-        64,
-        sixteen,
-        Projection::Perspective,
-    );
+    let torus = generate::torus(1.0, 0.4, 24, 12);
+    let (torus, views) = framed(&torus, 2, 64, sixteen, Projection::Perspective);
     for (mesh, set) in [
         (torus, views),
         (tiles(3), grid_set(sixteen, Cull::None)),
@@ -168,10 +156,8 @@ fn the_rasterizer_for_planted_bugs_has_none_of_its_own() {
     ] {
         let scene = scene_of(&mesh);
         for view in &set.views {
-            assert_eq!(
-                draw(&mesh, view, &set, Bug::None),
-                raster::keys(&scene, view, &set).keys
-            );
+            let drawn = raster::keys(&scene, view, &set).keys;
+            assert_eq!(draw(&mesh, view, &set, Bug::None), drawn);
         }
     }
 }
@@ -185,12 +171,8 @@ fn every_planted_bug_is_flagged_on_a_grid_exact_scene() {
             // 4 bits hold every corner, and one layer has no back: nothing to see.
             let visible = ![Bug::FourBitSnapping, Bug::BackToFront].contains(&bug);
             let found = tally(&mesh, &set, |view| draw(&mesh, view, &set, bug));
-            assert_eq!(
-                found.unexplained() > 0 && !found.passes(1.0),
-                visible,
-                "{bug:?}: {:?}",
-                found.counts
-            );
+            let flagged = found.unexplained() > 0 && !found.passes(1.0);
+            assert_eq!(flagged, visible, "{bug:?}: {:?}", found.counts);
             assert_eq!(found.unexplained(), found.of(Class::GridExact));
         }
     }
@@ -211,11 +193,8 @@ fn planted_bugs_are_flagged_on_an_ordinary_scene_where_they_show_at_all() {
                 continue;
             }
             let found = tally(&mesh, &set, |view| draw(&mesh, view, &set, bug));
-            assert!(
-                found.unexplained() > 0 && !found.passes(1.0),
-                "{bits:?} {bug:?}: {:?}",
-                found.counts
-            );
+            let flagged = found.unexplained() > 0 && !found.passes(1.0);
+            assert!(flagged, "{bits:?} {bug:?}: {:?}", found.counts);
         }
     }
 }
@@ -238,9 +217,8 @@ fn a_difference_is_named_after_what_is_wrong() {
     ] {
         let mut planted = rays.clone();
         planted.values_mut()[at] = shown;
-        let found = caster
-            .classify(&set, 0, [&planted, &rays], &Silent)
-            .expect("one size");
+        let found = caster.classify(&set, 0, [&planted, &rays], &Silent);
+        let found = found.expect("one size");
         assert_eq!(found.classes.values()[at], class);
         assert_eq!(found.witnesses.len(), usize::from(class != Class::Equal));
     }
@@ -252,20 +230,22 @@ fn a_difference_is_named_after_what_is_wrong() {
         found.expect("one size").classes.values()[0]
     };
     assert_eq!(classes([&planted, &rays]), Class::Stray);
-    assert_eq!(
-        classes([&rays, &planted]),
-        Class::Rays,
-        "the other way round"
-    );
+    let reversed = classes([&rays, &planted]);
+    assert_eq!(reversed, Class::Rays, "the other way round");
     let small = Grid::filled(31, 32, SampleKey::BACKGROUND);
-    assert!(matches!(
-        caster.classify(&set, 0, [&small, &rays], &Silent),
-        Err(Error::Usage(_))
-    ));
+    let refused = caster.classify(&set, 0, [&small, &rays], &Silent);
+    assert!(matches!(refused, Err(Error::Usage(_))));
+}
+
+/// The class of the pixel (16, 16) of a scene on the grid where the rasterizer shows `shown` and the rays something else.
+fn class_of(corners: impl IntoIterator<Item = DVec3>, shown: SampleKey) -> Class {
+    let mesh = soup_of(corners.into_iter().collect());
+    let set = grid_set(SubpixelBits::Sixteen, Cull::None);
+    class_at(&mesh, &set, [16, 16], shown)
 }
 
 /// The class of one pixel where the rasterizer shows `shown` and the rays something else.
-fn class_of(mesh: &Mesh, set: &ViewSet, [x, y]: [u32; 2], shown: SampleKey) -> Class {
+fn class_at(mesh: &Mesh, set: &ViewSet, [x, y]: [u32; 2], shown: SampleKey) -> Class {
     let caster = RayCaster::new(mesh);
     let rays = caster.keys(&set.views[0], set, &Silent).expect("goes on");
     let mut planted = rays.clone();
@@ -285,15 +265,12 @@ fn the_tolerance_ends_where_it_says() {
     ] {
         let x = 0.5 + distance;
         let corners = [(x, -9.0), (x, 9.0), (x - 14.0, 0.3)].map(|(x, y)| DVec3::new(x, y, 0.1));
-        let mesh = soup_of(corners.to_vec());
-        let set = grid_set(SubpixelBits::Sixteen, Cull::None);
         // At distance 0 the ray, moved right by a hair, misses.
-        let shown = if distance > 0.0 {
-            SampleKey::BACKGROUND
-        } else {
-            SampleKey::new(0x1999_9999, 0)
+        let shown = match distance > 0.0 {
+            true => SampleKey::BACKGROUND,
+            false => SampleKey::new(0x1999_9999, 0),
         };
-        assert_eq!(class_of(&mesh, &set, [16, 16], shown), class, "{distance}");
+        assert_eq!(class_of(corners, shown), class, "{distance}");
     }
     // Two parallel triangles of no slope, so many quanta apart.
     for (quanta, class) in [
@@ -301,30 +278,17 @@ fn the_tolerance_ends_where_it_says() {
         (2, Class::DepthTie),
         (3, Class::Occluded),
     ] {
-        let layer = |z: u32| {
-            let z = f64::from(z) / 4_294_967_296.0;
-            [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)].map(|(x, y)| DVec3::new(x, y, z))
-        };
-        let corners = [layer(1_000 + quanta), layer(1_000)].into_iter().flatten();
-        let mesh = soup_of(corners.collect());
-        let set = grid_set(SubpixelBits::Sixteen, Cull::None);
+        let depths = [1_000 + quanta, 1_000].map(|z| f64::from(z) / 4_294_967_296.0);
+        let corners = depths.into_iter().flat_map(|z| layer(|_| z));
         let shown = SampleKey::new(1_000 + quanta, 0);
-        assert_eq!(class_of(&mesh, &set, [16, 16], shown), class, "{quanta}");
+        assert_eq!(class_of(corners, shown), class, "{quanta}");
     }
     // The same on a slope of a million quanta per pixel: 3,906 of them within the tolerance, for each triangle.
     for (quanta, class) in [(7_000.0, Class::DepthTie), (8_500.0, Class::Occluded)] {
-        let layer = |above: f64| {
-            [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)]
-                .map(|(x, y)| DVec3::new(x, y, (1e9 + 1e6 * x + above) / 4_294_967_296.0))
-        };
-        let corners = [layer(quanta), layer(0.0)].into_iter().flatten();
-        let mesh = soup_of(corners.collect());
-        let set = grid_set(SubpixelBits::Sixteen, Cull::None);
-        assert_eq!(
-            class_of(&mesh, &set, [16, 16], SampleKey::new(1_000_000, 0)),
-            class,
-            "{quanta}"
-        );
+        let sloped = |above: f64| layer(|x| (1e9 + 1e6 * x + above) / 4_294_967_296.0);
+        let corners = [quanta, 0.0].into_iter().flat_map(sloped);
+        let shown = SampleKey::new(1_000_000, 0);
+        assert_eq!(class_of(corners, shown), class, "{quanta}");
     }
 }
 
@@ -336,17 +300,9 @@ fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
         (1.1 * TOLERANCE, Class::Stray),
         (9.0, Class::Stray),
     ] {
-        let corners = [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)]
-            .map(|(x, y)| DVec3::new(x, y, (x - 0.5 - distance) / 32.0));
-        let (mesh, set) = (
-            soup_of(corners.to_vec()),
-            grid_set(SubpixelBits::Sixteen, Cull::None),
-        );
-        assert_eq!(
-            class_of(&mesh, &set, [16, 16], SampleKey::new(0, 0)),
-            class,
-            "{distance}"
-        );
+        let corners = layer(|x| (x - 0.5 - distance) / 32.0);
+        let found = class_of(corners, SampleKey::new(0, 0));
+        assert_eq!(found, class, "{distance}");
     }
     for (cull, class) in [
         (Cull::None, Class::Equal),
@@ -354,24 +310,18 @@ fn what_the_near_plane_cuts_off_and_what_is_culled_is_not_there() {
         (Cull::Front, Class::Stray),
     ] {
         let z = 1_000.0 / 4_294_967_296.0 + 1e-12;
-        let corners = [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)].map(|(x, y)| DVec3::new(x, y, z));
-        let mesh = soup_of(corners.to_vec());
+        let mesh = soup_of(layer(|_| z).to_vec());
         let mut set = grid_set(SubpixelBits::Sixteen, cull);
-        assert_eq!(
-            class_of(&mesh, &set, [16, 16], SampleKey::new(1_000, 0)),
-            class,
-            "{cull:?}"
-        );
+        let shown = SampleKey::new(1_000, 0);
+        let found = class_at(&mesh, &set, [16, 16], shown);
+        assert_eq!(found, class, "{cull:?}");
         // Seen from the other side it is the other way round.
         let mirrored = match cull {
             Cull::Back => Class::Stray,
             _ => Class::Equal,
         };
         set.views[0].matrix[0][0] = -0.0625;
-        assert_eq!(
-            class_of(&mesh, &set, [15, 16], SampleKey::new(1_000, 0)),
-            mirrored,
-            "{cull:?}"
-        );
+        let found = class_at(&mesh, &set, [15, 16], shown);
+        assert_eq!(found, mirrored, "{cull:?}");
     }
 }

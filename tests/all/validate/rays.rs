@@ -12,7 +12,8 @@ use lodmark::{
 use proptest::prelude::*;
 
 use crate::support::{
-    Impatient, code, expect, folder, lodmark, meshes, model, put, scene_of, stderr, stdout,
+    Impatient, bytes, code, expect, folder, json, lodmark, meshes, model, put, refused, scene_of,
+    stderr, stdout,
 };
 
 /// The views of a mesh from some of the dodecahedron's directions, and the mesh in their frame.
@@ -26,10 +27,8 @@ pub(crate) fn framed(
     let frame = frame_of(mesh);
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
     let chosen = &sets::dodecahedron()[..count];
-    let set = ViewSet::around(&sphere, chosen, size, size, projection)
-        .expect("views")
-        .with_subpixel(bits)
-        .enter_frame(frame);
+    let set = ViewSet::around(&sphere, chosen, size, size, projection).expect("views");
+    let set = set.with_subpixel(bits).enter_frame(frame);
     (mesh.enter_frame(frame).in_frame_units().clone(), set)
 }
 
@@ -97,13 +96,14 @@ pub(crate) fn soup_of(corners: Vec<DVec3>) -> Mesh {
 
 /// One large triangle in front of another.
 pub(crate) fn two_layers() -> (Mesh, ViewSet) {
-    let layer =
-        |z: f64| [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)].map(|(x, y)| DVec3::new(x, y, z));
-    let corners = [layer(0.5), layer(0.25)].into_iter().flatten();
-    (
-        soup_of(corners.collect()),
-        grid_set(SubpixelBits::Sixteen, Cull::None),
-    )
+    let corners = [0.5, 0.25].into_iter().flat_map(|z| layer(|_| z));
+    let set = grid_set(SubpixelBits::Sixteen, Cull::None);
+    (soup_of(corners.collect()), set)
+}
+
+/// A large triangle with a depth at every column.
+pub(crate) fn layer(depth: impl Fn(f64) -> f64) -> [DVec3; 3] {
+    [(-12.3, -11.7), (13.1, -9.9), (0.3, 12.9)].map(|(x, y)| DVec3::new(x, y, depth(x)))
 }
 
 /// Corners on pixel centres, on pixel corners, or anywhere on the sub-pixel grid; far outside the image, too.
@@ -128,10 +128,8 @@ fn grid_soup() -> impl Strategy<Value = (SubpixelBits, Vec<DVec3>)> {
     bits.prop_flat_map(|bits| {
         let triangle = [grid_corner(bits), grid_corner(bits), grid_corner(bits)];
         let soup = proptest::collection::vec(triangle, 1..30);
-        (
-            Just(bits),
-            soup.prop_map(|soup| soup.into_iter().flatten().collect()),
-        )
+        let corners = soup.prop_map(|soup| soup.into_iter().flatten().collect());
+        (Just(bits), corners)
     })
 }
 
@@ -221,13 +219,8 @@ fn real_models_are_shown_as_rays_hit_them() {
     let Some(mesh) = model("bunny.ply") else {
         return;
     };
-    let (mesh, set) = framed(
-        &mesh,
-        2,
-        128,
-        SubpixelBits::Sixteen,
-        Projection::Perspective,
-    );
+    let bits = SubpixelBits::Sixteen;
+    let (mesh, set) = framed(&mesh, 2, 128, bits, Projection::Perspective);
     let found = check(&mesh, &set);
     assert!(found.passes(1e-4), "{:?}", found.worst);
     assert!(found.of(Class::Equal) > 8_000);
@@ -238,27 +231,20 @@ fn casting_and_classifying_can_be_interrupted() {
     let (mesh, set) = two_layers();
     let caster = RayCaster::new(&mesh);
     let view = &set.views[0];
-    assert!(matches!(
-        caster.keys(view, &set, &Impatient),
-        Err(Error::Interrupted)
-    ));
+    let stopped = caster.keys(view, &set, &Impatient);
+    assert!(matches!(stopped, Err(Error::Interrupted)));
     let rays = caster.keys(view, &set, &Silent).expect("goes on");
-    assert!(matches!(
-        caster.classify(&set, 0, [&rays, &rays], &Impatient),
-        Err(Error::Interrupted)
-    ));
+    let stopped = caster.classify(&set, 0, [&rays, &rays], &Impatient);
+    assert!(matches!(stopped, Err(Error::Interrupted)));
 }
 
 #[test]
 fn the_command_answers_with_classes_a_picture_and_its_exit_code() {
     let dir = folder();
     put(&dir, "in.ply", &generate::probe());
-    let words = ["check-rays", "in.ply", "--size", "96", "--json", "r.json"];
-    let more = ["--picture", "p.png", "--subpixel-bits", "8"];
-    expect(&dir, 0, &[&words[..], &more].concat());
-    let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(dir.path().join("r.json")).expect("written"))
-            .expect("JSON");
+    let words = "check-rays in.ply --size 96 --subpixel-bits 8 --json r.json";
+    expect(&dir, 0, &format!("{words} --picture p.png"));
+    let report = json(&dir, "r.json");
     assert_eq!(report["tally"]["pixels"], 20 * 96 * 96);
     assert_eq!(report["unexplained"], 0);
     assert_eq!(report["options"]["subpixel_bits"], 8);
@@ -270,19 +256,15 @@ fn the_command_answers_with_classes_a_picture_and_its_exit_code() {
     assert!(picture.values().contains(&Class::Edge.color()));
     assert!(picture.width() > 5 * 96 && picture.height() > 4 * 96);
     // The same differences are too many where none may be.
-    let none = lodmark(
-        &dir,
-        &[&words[..], &["--subpixel-bits", "8", "--cap", "0"]].concat(),
-    );
+    let none = lodmark(&dir, &format!("{words} --cap 0"));
     assert_eq!(code(&none), 1, "{}", stderr(&none));
     assert!(stdout(&none).contains("NOT what rays hit"));
     for (words, said) in [
-        (&["check-rays", "in.ply", "--cap", "2"][..], "--cap"),
-        (&["check-rays", "in.ply", "--subpixel-bits", "9"], "8 or 16"),
-        (&["check-rays", "in.ply", "--size", "0"], "0"),
+        ("--cap 2", "--cap"),
+        ("--subpixel-bits 9", "8 or 16"),
+        ("--size 0", "0"),
     ] {
-        let message = expect(&dir, 2, words);
-        assert!(message.contains(said), "{message}");
+        refused(&dir, 2, &format!("check-rays in.ply {words}"), said);
     }
 }
 
@@ -291,22 +273,10 @@ fn no_number_of_threads_changes_what_check_rays_reports() {
     let dir = folder();
     put(&dir, "in.ply", &generate::probe());
     let reports = ["1", "2", "3"].map(|threads| {
-        let words = [
-            "check-rays",
-            "in.ply",
-            "--size",
-            "70",
-            "--subpixel-bits",
-            "8",
-            "--views",
-            "octahedron:0",
-            "--json",
-            "r.json",
-            "--threads",
-            threads,
-        ];
-        expect(&dir, 0, &words);
-        std::fs::read(dir.path().join("r.json")).expect("written")
+        let words =
+            "check-rays in.ply --size 70 --subpixel-bits 8 --views octahedron:0 --json r.json";
+        expect(&dir, 0, &format!("{words} --threads {threads}"));
+        bytes(&dir, "r.json")
     });
     assert!(reports.iter().all(|r| *r == reports[0]));
 }
