@@ -11,11 +11,8 @@ use lodmark::{
 use proptest::prelude::*;
 
 pub(crate) fn mesh(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Mesh {
-    Mesh::from_triangles(
-        positions.iter().map(|&p| DVec3::from(p)).collect(),
-        triangles.to_vec(),
-    )
-    .expect("valid")
+    let positions = positions.iter().map(|&p| DVec3::from(p)).collect();
+    Mesh::from_triangles(positions, triangles.to_vec()).expect("valid")
 }
 
 pub(crate) const TETRAHEDRON: [[f64; 3]; 4] =
@@ -36,10 +33,8 @@ fn zeros_of_either_sign_weld_and_neighbours_in_the_last_bit_do_not() {
     ));
     assert_eq!(welded.merged, 2);
     assert_eq!(welded.mesh.positions().len(), 2);
-    assert!(
-        welded.mesh.positions()[0].x.is_sign_positive(),
-        "the first stays"
-    );
+    let first = welded.mesh.positions()[0];
+    assert!(first.x.is_sign_positive(), "the first stays");
     assert_eq!(welded.mesh.triangles(), [[0, 0, 1], [0, 1, 0]]);
 }
 
@@ -62,10 +57,8 @@ fn degenerate_triangles_go_and_flat_ones_stay_in_canonical_order() {
 
 #[test]
 fn the_morton_curve_visits_the_corners_of_a_cube_in_binary_order() {
-    let cube: Vec<[f64; 3]> = (0..8_u8)
-        .rev()
-        .map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from))
-        .collect();
+    let corner = |i: u8| [i & 1, i >> 1 & 1, i >> 2].map(f64::from);
+    let cube: Vec<[f64; 3]> = (0..8).rev().map(corner).collect();
     let done = canonical(&mesh(&cube, &[[0, 1, 2], [3, 4, 5], [6, 7, 0]]));
     let expected: Vec<DVec3> = cube.iter().rev().map(|&p| DVec3::from(p)).collect();
     assert_eq!(done.mesh.positions(), expected);
@@ -74,12 +67,8 @@ fn the_morton_curve_visits_the_corners_of_a_cube_in_binary_order() {
 #[test]
 fn an_orientation_survives_the_canonical_order() {
     let volume = |m: &Mesh| -> f64 {
-        (0..m.triangles().len())
-            .map(|t| {
-                let [a, b, c] = m.corners(t);
-                a.dot(b.cross(c))
-            })
-            .sum()
+        let corners = (0..m.triangles().len()).map(|t| m.corners(t));
+        corners.map(|[a, b, c]| a.dot(b.cross(c))).sum()
     };
     let before = mesh(&TETRAHEDRON, &FACES);
     let after = canonical(&before).mesh;
@@ -97,10 +86,8 @@ fn the_extent_of_the_largest_coordinates_does_not_overflow() {
     })
     .expect("valid");
     let done = canonical(&huge).mesh;
-    assert_eq!(
-        done.positions(),
-        [DVec3::splat(-f64::MAX), DVec3::ZERO, DVec3::splat(f64::MAX)]
-    );
+    let expected = [-f64::MAX, 0.0, f64::MAX].map(DVec3::splat);
+    assert_eq!(done.positions(), expected);
     assert_eq!(Findings::of(&huge).zero_area_triangles.count, 1);
 }
 
@@ -119,16 +106,8 @@ fn a_digest_changes_with_every_part_and_is_pinned() {
         |p| p.precision = Precision::F64,
         |p| p.materials.libraries.push("a".into()),
         |p| p.materials.names.push("a".into()),
-        |p| {
-            p.attributes =
-                Attributes::new(&[ChannelKind::TexCoord(0)], vec![0.0; 6], vec![[0; 3]; 4])
-                    .expect("fits")
-        },
-        |p| {
-            p.attributes =
-                Attributes::new(&[ChannelKind::TexCoord(1)], vec![0.0; 6], vec![[0; 3]; 4])
-                    .expect("fits")
-        },
+        |p| p.attributes = textured(0),
+        |p| p.attributes = textured(1),
     ];
     for change in changes {
         let mut parts = base.clone().into_parts();
@@ -140,6 +119,12 @@ fn a_digest_changes_with_every_part_and_is_pinned() {
     seen.dedup();
     assert_eq!(seen.len(), count);
     assert!(seen.iter().all(|d| d.len() == 64));
+}
+
+/// Texture coordinates of the four faces, all the same, in a set.
+fn textured(set: u8) -> Attributes {
+    let kinds = [ChannelKind::TexCoord(set)];
+    Attributes::new(&kinds, vec![0.0; 6], vec![[0; 3]; 4]).expect("fits")
 }
 
 const EMPTY_DIGEST: &str = "8099889b33edd09f728f46221e57faa7e52f564622347092e8a76f1f5aa6ca15";
@@ -160,18 +145,13 @@ impl Soup {
         if reversed_names {
             names.reverse();
         }
-        let of_triangle = self
-            .materials
-            .iter()
-            .map(|m| {
-                m.map_or(Materials::NONE, |m| {
-                    names.iter().position(|n| n == m).expect("one of them") as u32
-                })
-            })
+        let number = |m: &str| names.iter().position(|n| n == m).expect("one of them") as u32;
+        let materials = self.materials.iter();
+        let of_triangle = materials
+            .map(|m| m.map_or(Materials::NONE, number))
             .collect();
-        let corners = (0..self.triangles.len() as u32)
-            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-            .collect();
+        let corners = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        let corners = corners.collect();
         let values = self.uvs.iter().flatten().flatten().copied().collect();
         Mesh::new(MeshParts {
             positions: self.positions.clone(),
@@ -228,24 +208,20 @@ fn shuffled(soup: &Soup, keys: &[u32]) -> Soup {
     let mut faces: Vec<usize> = (0..soup.triangles.len()).collect();
     faces.sort_by_key(|&i| key(i + 7));
     let turned = |t: usize| key(t + 13) as usize % 3;
+    let triangle = |&t: &usize| {
+        let mut corners = soup.triangles[t].map(|v| renumbered[v as usize]);
+        corners.rotate_left(turned(t));
+        corners
+    };
+    let uvs = |&t: &usize| {
+        let mut corners = soup.uvs[t];
+        corners.rotate_left(turned(t));
+        corners
+    };
     Soup {
         positions: order.iter().map(|&i| soup.positions[i]).collect(),
-        triangles: faces
-            .iter()
-            .map(|&t| {
-                let mut corners = soup.triangles[t].map(|v| renumbered[v as usize]);
-                corners.rotate_left(turned(t));
-                corners
-            })
-            .collect(),
-        uvs: faces
-            .iter()
-            .map(|&t| {
-                let mut corners = soup.uvs[t];
-                corners.rotate_left(turned(t));
-                corners
-            })
-            .collect(),
+        triangles: faces.iter().map(triangle).collect(),
+        uvs: faces.iter().map(uvs).collect(),
         materials: faces.iter().map(|&t| soup.materials[t]).collect(),
     }
 }

@@ -15,30 +15,24 @@ fn doubled_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 fn area(mesh: &Mesh, triangles: std::ops::Range<usize>) -> f64 {
-    triangles
-        .map(|t| 0.5 * math::length(doubled_normal(mesh.corners(t))))
-        .sum()
+    let area = |t| 0.5 * math::length(doubled_normal(mesh.corners(t)));
+    triangles.map(area).sum()
 }
 
 fn volume(mesh: &Mesh) -> f64 {
-    (0..mesh.triangles().len())
-        .map(|t| mesh.corners(t))
-        .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
-        .sum()
+    let corners = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+    corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
 /// Every side of a triangle is the side of one other, in the opposite direction.
 fn closed(mesh: &Mesh) -> bool {
-    let mut sides: Vec<[u32; 2]> = mesh
-        .triangles()
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-        .collect();
+    let triangles = mesh.triangles().iter();
+    let sides = triangles.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut sides: Vec<[u32; 2]> = sides.collect();
     sides.sort_unstable();
     let once = sides.windows(2).all(|w| w[0] != w[1]);
-    let paired = sides
-        .iter()
-        .all(|&[a, b]| sides.binary_search(&[b, a]).is_ok());
+    let paired = |&[a, b]: &[u32; 2]| sides.binary_search(&[b, a]).is_ok();
+    let paired = sides.iter().all(paired);
     let two = Edges::of(mesh).iter().all(|(_, t)| t.len() == 2);
     once && paired && two
 }
@@ -61,10 +55,7 @@ fn parts(mesh: &Mesh) -> Vec<Vec<usize>> {
     }
     for t in mesh.triangles() {
         for k in [1, 2] {
-            let (a, b) = (
-                root(&mut parent, t[0] as usize),
-                root(&mut parent, t[k] as usize),
-            );
+            let [a, b] = [t[0], t[k]].map(|v| root(&mut parent, v as usize));
             parent[a.max(b)] = a.min(b);
         }
     }
@@ -79,42 +70,24 @@ fn parts(mesh: &Mesh) -> Vec<Vec<usize>> {
 #[test]
 fn closed_meshes_have_two_triangles_at_every_edge_and_face_outward() {
     let pi = std::f64::consts::PI;
+    let torus = generate::torus(1.0, 0.4, 96, 48);
+    let tori = generate::interlocking_tori(96, 48);
+    let textured = generate::textured_torus(192, 96);
+    let (shells, hollow) = (generate::shells(2, 4), 4.0 / 3.0 * pi * (1.0 + 0.125));
     for (name, mesh, holes, expected) in [
         ("tetrahedron", generate::tetrahedron(), 2, 8.0 / 3.0),
         ("cube", generate::cube(), 2, 8.0),
         ("icosphere", generate::icosphere(4), 2, 4.0 / 3.0 * pi),
-        (
-            "torus",
-            generate::torus(1.0, 0.4, 96, 48),
-            0,
-            2.0 * pi * pi * 0.16,
-        ),
-        (
-            "tori",
-            generate::interlocking_tori(96, 48),
-            0,
-            4.0 * pi * pi * 0.09,
-        ),
-        (
-            "textured-torus",
-            generate::textured_torus(192, 96),
-            0,
-            2.0 * pi * pi * 0.09,
-        ),
-        (
-            "shells",
-            generate::shells(2, 4),
-            4,
-            4.0 / 3.0 * pi * (1.0 + 0.125),
-        ),
+        ("torus", torus, 0, 2.0 * pi * pi * 0.16),
+        ("tori", tori, 0, 4.0 * pi * pi * 0.09),
+        ("textured-torus", textured, 0, 2.0 * pi * pi * 0.09),
+        ("shells", shells, 4, hollow),
     ] {
         assert!(closed(&mesh), "{name}");
         assert_eq!(euler(&mesh), holes, "{name}");
         let v = volume(&mesh);
-        assert!(
-            (v - expected).abs() < 0.01 * expected,
-            "{name}: volume {v}, expected {expected}"
-        );
+        let near = (v - expected).abs() < 0.01 * expected;
+        assert!(near, "{name}: volume {v}, expected {expected}");
     }
 }
 
@@ -134,14 +107,7 @@ fn the_parts_of_the_engine_are_closed_apart_and_hidden_by_the_casing() {
                 radii.fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(r), h.max(r)));
             assert!(high < outer, "part {k}: {low}..{high} in {outer}");
             // The flat triangles of a sphere reach further in than their corners.
-            outer = part
-                .iter()
-                .map(|&t| {
-                    let [a, b, c] = mesh.corners(t);
-                    doubled_normal([a, b, c]).normalize().dot(a)
-                })
-                .fold(f64::INFINITY, f64::min)
-                .min(low);
+            outer = flat_radius(&mesh, part).min(low);
         }
         let rings = parts[9..].iter().flatten().flat_map(|&t| mesh.corners(t));
         assert!(rings.map(math::length).fold(0.0, f64::max) < outer);
@@ -149,14 +115,18 @@ fn the_parts_of_the_engine_are_closed_apart_and_hidden_by_the_casing() {
         let interior = area(&mesh, parts[0].len()..total);
         assert!(interior > 4.0 * casing, "{interior} inside {casing}");
         for part in &parts {
-            let v: f64 = part
-                .iter()
-                .map(|&t| mesh.corners(t))
-                .map(|[a, b, c]| a.dot(b.cross(c)))
-                .sum();
-            assert!(v > 0.0, "a part faces inward");
+            assert!(part_volume(&mesh, part) > 0.0, "a part faces inward");
         }
     }
+}
+
+/// The distance of the origin from the plane of a part's triangles, the least.
+fn flat_radius(mesh: &Mesh, part: &[usize]) -> f64 {
+    let planes = part.iter().map(|&t| {
+        let [a, b, c] = mesh.corners(t);
+        doubled_normal([a, b, c]).normalize().dot(a)
+    });
+    planes.fold(f64::INFINITY, f64::min)
 }
 
 /// Six times the volume of a part.
@@ -172,9 +142,8 @@ fn the_parts_of_the_motor_are_closed_and_all_but_three_cavities_face_outward() {
         assert!(closed(&mesh), "detail {detail}");
         let parts = parts(&mesh);
         assert_eq!(parts.len(), 169);
-        let inward: Vec<usize> = (0..parts.len())
-            .filter(|&k| part_volume(&mesh, &parts[k]) < 0.0)
-            .collect();
+        let inward = |&k: &usize| part_volume(&mesh, &parts[k]) < 0.0;
+        let inward: Vec<usize> = (0..parts.len()).filter(inward).collect();
         assert_eq!(inward, [3, 4, 5], "after the three housings");
         for (housing, cavity) in [(0, 3), (1, 4), (2, 5)] {
             // Walls have a thickness: every corner of the cavity is inside the box of its housing.
@@ -200,11 +169,7 @@ fn the_casing_hides_what_it_encases() {
         let parts = parts(&mesh);
         assert_eq!(parts.len(), 3);
         assert!(parts.iter().all(|part| part_volume(&mesh, part) > 0.0));
-        let inner = parts[0].iter().map(|&t| {
-            let [a, b, c] = mesh.corners(t);
-            doubled_normal([a, b, c]).normalize().dot(a)
-        });
-        let inner = inner.fold(f64::INFINITY, f64::min);
+        let inner = flat_radius(&mesh, &parts[0]);
         let rest = parts[1..].iter().flatten().flat_map(|&t| mesh.corners(t));
         let outer = rest.map(math::length).fold(0.0, f64::max);
         assert!(outer < inner, "{outer} in {inner}");
@@ -215,10 +180,10 @@ fn the_casing_hides_what_it_encases() {
 fn the_links_of_the_chain_do_not_touch() {
     let mesh = generate::interlocking_tori(64, 32);
     let (a, b) = mesh.positions().split_at(mesh.positions().len() / 2);
-    let nearest = a
+    let pairs = a
         .iter()
-        .flat_map(|p| b.iter().map(move |q| p.distance_squared(*q)))
-        .fold(f64::INFINITY, f64::min);
+        .flat_map(|p| b.iter().map(move |q| p.distance_squared(*q)));
+    let nearest = pairs.fold(f64::INFINITY, f64::min);
     assert!(nearest > 0.3 * 0.3, "{nearest}");
     let inside = |p: &&DVec3| p.x > -0.3 && p.x < 0.3;
     assert!(a.iter().any(|p| inside(&p)) && b.iter().any(|p| inside(&p)));
@@ -285,10 +250,8 @@ fn every_side_of_the_cube_has_its_own_texture_normal_and_material() {
         assert!(turn > 0.0, "the texture of triangle {t} is mirrored");
         let name = &mesh.materials().names[mesh.materials().of(t) as usize];
         let sign = if n.element_sum() > 0.0 { "+" } else { "-" };
-        let axis = ["x", "y", "z"][[n.x, n.y, n.z]
-            .iter()
-            .position(|x| x.abs() > 0.5)
-            .expect("an axis")];
+        let axis = n.to_array().iter().position(|x| x.abs() > 0.5);
+        let axis = ["x", "y", "z"][axis.expect("an axis")];
         assert_eq!(*name, format!("{axis}{sign}"));
     }
 }
@@ -306,35 +269,22 @@ fn the_probe_has_everything_it_is_there_for() {
         t.sort_unstable();
     }
     sorted.sort_unstable();
-    assert!(
-        sorted.windows(3).any(|w| w[0] == w[1] && w[1] == w[2]),
-        "a face that occurs thrice"
-    );
+    let mut threes = sorted.windows(3);
+    let thrice = threes.any(|w| w[0] == w[1] && w[1] == w[2]);
+    assert!(thrice, "a face that occurs thrice");
     let shapes = (0..mesh.triangles().len()).map(|t| {
         let [a, b, c] = mesh.corners(t);
-        let longest = a
-            .distance_squared(b)
-            .max(b.distance_squared(c))
-            .max(c.distance_squared(a));
+        let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| p.distance_squared(q));
+        let longest = sides.into_iter().fold(0.0, f64::max);
         (math::length(doubled_normal([a, b, c])), longest)
     });
-    assert_eq!(
-        shapes.clone().filter(|(area, _)| *area < 1e-9).count(),
-        3,
-        "degenerate"
-    );
-    assert!(
-        shapes
-            .filter(|&(area, longest)| area > 1e-9 && area < 0.005 * longest)
-            .count()
-            > 20,
-        "slivers"
-    );
+    let degenerate = shapes.clone().filter(|(area, _)| *area < 1e-9);
+    assert_eq!(degenerate.count(), 3, "degenerate");
+    let slivers = shapes.filter(|&(area, longest)| area > 1e-9 && area < 0.005 * longest);
+    assert!(slivers.count() > 20, "slivers");
     // Interpenetration: an edge of the tetrahedron passes through the sphere.
-    let radii: Vec<f64> = mesh.positions()[42..46]
-        .iter()
-        .map(|&p| math::length(p))
-        .collect();
+    let radii = mesh.positions()[42..46].iter().map(|&p| math::length(p));
+    let radii: Vec<f64> = radii.collect();
     assert!(radii.iter().all(|&r| r > 0.5), "{radii:?}");
     assert!(mesh.positions()[42].distance(mesh.positions()[43]) < 2.0 * 0.79);
 }
@@ -355,18 +305,9 @@ fn every_name_has_a_mesh_and_other_names_have_none() {
 fn random_numbers_are_those_of_the_published_generator() {
     // The demonstration program of the PCG library: seed 42, stream 54.
     let mut random = Pcg32::new(42, 54);
-    let first = [(); 6].map(|()| random.bits());
-    assert_eq!(
-        first,
-        [
-            0xa15c_02b7,
-            0x7b47_f409,
-            0xba1d_3330,
-            0x83d2_f293,
-            0xbfa4_784b,
-            0xcbed_606e
-        ]
-    );
+    let [a, b, c] = [0xa15c_02b7, 0x7b47_f409, 0xba1d_3330];
+    let [d, e, f] = [0x83d2_f293, 0xbfa4_784b, 0xcbed_606e];
+    assert_eq!([(); 6].map(|()| random.bits()), [a, b, c, d, e, f]);
 }
 
 proptest! {

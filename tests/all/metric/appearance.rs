@@ -24,21 +24,16 @@ use crate::support::{Impatient, Random, same_on_all_threads, scene_of};
 fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
     let sphere = Sphere::of_mesh(mesh).expect("triangles");
     let directions = &sets::rhombicuboctahedron()[..6];
-    ViewSet::around(&sphere, directions, size, size, Default::default())
-        .expect("views")
-        .with_samples(samples)
-        .expect("allowed")
+    let set = ViewSet::around(&sphere, directions, size, size, Default::default());
+    set.expect("views").with_samples(samples).expect("allowed")
 }
 
 /// `mesh` with every vertex moved by up to `by`, each its own way.
 pub(crate) fn shaken(mesh: &Mesh, by: f64) -> Mesh {
     let mut random = Random::new(7, 1);
     let mut moved = || (random.unit() - 0.5) * 2.0 * by;
-    let positions = mesh
-        .positions()
-        .iter()
-        .map(|&p| p + DVec3::new(moved(), moved(), moved()))
-        .collect();
+    let moved = |&p: &DVec3| p + DVec3::new(moved(), moved(), moved());
+    let positions = mesh.positions().iter().map(moved).collect();
     Mesh::from_triangles(positions, mesh.triangles().to_vec()).expect("the same triangles")
 }
 
@@ -62,10 +57,8 @@ fn by_hand(a: &Mesh, b: &Mesh, views: &ViewSet, shading: Interpolation) -> Vec<u
             for x in 0..views.width {
                 let mut difference = 0_i64;
                 for i in 0..views.samples * views.samples {
-                    let (sx, sy) = (
-                        x * views.samples + i % views.samples,
-                        y * views.samples + i / views.samples,
-                    );
+                    let (dx, dy) = (i % views.samples, i / views.samples);
+                    let (sx, sy) = (x * views.samples + dx, y * views.samples + dy);
                     difference += i64::from(a.at(sx, sy)) - i64::from(b.at(sx, sy));
                 }
                 sum += difference * difference;
@@ -127,8 +120,8 @@ fn no_number_of_threads_changes_a_judgement() {
     let mesh = generate::torus(1.0, 0.4, 256, 80);
     let scenes = [shaken(&mesh, 0.01), generate::icosphere(2)].map(|m| scene_of(&m));
     let (reference, views) = (scene_of(&mesh), views(&mesh, 48, 2));
-    let one =
-        same_on_all_threads(|| appearance(&reference, &scenes, &views, &Silent).expect("finite"));
+    let judged = || appearance(&reference, &scenes, &views, &Silent).expect("finite");
+    let one = same_on_all_threads(judged);
     // Candidates that are judged together do not see each other.
     for (scene, found) in scenes.iter().zip(&one) {
         let alone = appearance(&reference, std::slice::from_ref(scene), &views, &Silent);
@@ -166,11 +159,9 @@ fn the_pictures_of_a_view_are_those_that_were_compared() {
     let worst = found.worst();
     let scenes = [&scene_of(&mesh), &scene_of(&other)];
     let [a, b] = pictures(scenes, &views, worst.view, worst.shading).expect("a view");
-    let squares = a.values().iter().zip(b.values());
-    let sum: u64 = squares
-        .map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2))
-        .sum();
-    assert_eq!(sum, worst.error.sum);
+    let pairs = a.values().iter().zip(b.values());
+    let squares = pairs.map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2));
+    assert_eq!(squares.sum::<u64>(), worst.error.sum);
     let missing = pictures(scenes, &views, 6, Interpolation::Flat);
     assert!(matches!(missing, Err(Error::Usage(_))));
 }
@@ -191,11 +182,7 @@ fn a_vertex_out_of_this_world_is_refused_with_a_hint_at_units() {
 fn an_interruption_ends_a_judgement() {
     let mesh = generate::cube();
     let scene = scene_of(&mesh);
-    let found = appearance(
-        &scene,
-        std::slice::from_ref(&scene),
-        &views(&mesh, 16, 1),
-        &Impatient,
-    );
+    let (scenes, views) = (std::slice::from_ref(&scene), views(&mesh, 16, 1));
+    let found = appearance(&scene, scenes, &views, &Impatient);
     assert!(matches!(found, Err(Error::Interrupted)));
 }

@@ -129,10 +129,8 @@ fn psnr_has_its_textbook_values() {
     let error = squared_error(&black, &white, 1).expect("same size");
     assert_eq!((error.rms(), error.psnr()), (255.0, Some(0.0)));
     let grey = plane(2, &[1_u8; 4]);
-    let psnr = squared_error(&black, &grey, 1)
-        .expect("same size")
-        .psnr()
-        .expect("finite");
+    let error = squared_error(&black, &grey, 1).expect("same size");
+    let psnr = error.psnr().expect("finite");
     assert!((psnr - 48.130_803_608_679_1).abs() < 1e-12, "{psnr}");
     // 2 of 4 samples of every pixel differ by one level: half a level.
     let halves = squared_error(&plane(1, &[0_u16]), &plane(1, &[2_u16]), 4).expect("same size");
@@ -146,20 +144,16 @@ fn images_that_cannot_be_compared_are_refused() {
         let error = squared_error(&square, &other, 1).expect_err("sizes differ");
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(error.to_string().contains("2 x 2"), "{error}");
-        assert!(matches!(
-            compare(&square, &other),
-            ImageComparison::Sizes { .. }
-        ));
+        let found = compare(&square, &other);
+        assert!(matches!(found, ImageComparison::Sizes { .. }));
         assert!(signed_picture(&square, &other, 1).is_err());
     }
     let nothing = Grid::filled(0, 0, 0_u8);
     assert!(squared_error(&nothing, &nothing, 1).is_err());
     assert!(squared_error(&square, &square, 0).is_err());
     let bright = plane(1, &[256_u16]);
-    assert!(
-        squared_error(&bright, &bright, 1).is_err(),
-        "256 is no level"
-    );
+    let refused = squared_error(&bright, &bright, 1);
+    assert!(refused.is_err(), "256 is no level");
     assert!(ViewErrors::new(Vec::new()).is_err());
     let set = [square.clone(), square];
     assert!(ViewErrors::between(&set, &set[..1], 1).is_err());
@@ -173,10 +167,8 @@ fn sums_of_different_samples_or_beyond_64_bits_do_not_add() {
         samples,
     };
     assert!(error(1, 1).combined(error(1, 4)).is_err());
-    let overflow = error(u64::MAX, 1)
-        .combined(error(1, 1))
-        .expect_err("too large");
-    assert_eq!(overflow.exit_code(), 4);
+    let overflow = error(u64::MAX, 1).combined(error(1, 1));
+    assert_eq!(overflow.expect_err("too large").exit_code(), 4);
 }
 
 #[test]
@@ -210,34 +202,14 @@ fn a_difference_picture_is_grey_only_where_images_are_equal() {
 }
 
 fn cube() -> Mesh {
-    let positions = (0..8)
-        .map(|i| {
-            let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-            DVec3::new(side(0), side(1), side(2))
-        })
-        .collect();
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    Mesh::from_triangles(positions, triangles).expect("a cube")
+    super::surface::moved(&super::surface::cube(), |p| p * 2.0 - DVec3::ONE)
 }
 
 #[test]
 fn a_cube_seen_from_in_front_of_a_face_has_the_four_edges_of_that_face() {
     let from = |eyes: &[Eye]| {
-        silhouette_histogram(&cube(), eyes, &Silent)
-            .expect("finite")
-            .counts()
-            .to_vec()
+        let found = silhouette_histogram(&cube(), eyes, &Silent).expect("finite");
+        found.counts().to_vec()
     };
     let near = Eye::Point(DVec3::new(0.0, 0.0, 5.0));
     assert_eq!(from(&[near]), [14, 4]);
@@ -255,8 +227,8 @@ fn a_cube_seen_from_in_front_of_a_face_has_the_four_edges_of_that_face() {
 
 #[test]
 fn a_boundary_edge_is_a_silhouette_from_both_sides_but_not_from_within_its_plane() {
-    let one = Mesh::from_triangles(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])
-        .expect("a triangle");
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let one = Mesh::from_triangles(corners, vec![[0, 1, 2]]).expect("a triangle");
     for (axis, counts) in [(DVec3::Z, [0, 3]), (-DVec3::Z, [0, 3]), (DVec3::X, [3, 0])] {
         let found = silhouette_histogram(&one, &[Eye::Axis(axis)], &Silent).expect("finite");
         assert_eq!(found.counts(), counts, "from {axis}");
@@ -329,10 +301,6 @@ proptest! {
 #[test]
 fn a_red_picture_of_other_sizes_or_scale_0_is_refused() {
     let one = plane(1, &[7_u8]);
-    assert_refused(&one, &plane(2, &[7_u8, 8]), 1);
-    assert_refused(&one, &one, 0);
-}
-
-fn assert_refused(expected: &Grid<u8>, actual: &Grid<u8>, scale: u8) {
-    assert!(red_picture(expected, actual, scale).is_err());
+    assert!(red_picture(&one, &plane(2, &[7_u8, 8]), 1).is_err());
+    assert!(red_picture(&one, &one, 0).is_err());
 }

@@ -10,7 +10,7 @@ use lodmark::{
     Error, Result, Silent,
     geometry::closest_point,
     mesh::{Mesh, MeshParts},
-    metric::surface::{SurfaceDistance, surface_distance},
+    metric::surface::{Distances, SurfaceDistance, surface_distance},
     num::Precision,
 };
 use proptest::prelude::*;
@@ -32,11 +32,9 @@ fn soup(corners: &[[DVec3; 3]]) -> Mesh {
     mesh(corners.concat(), triangles.collect())
 }
 
-fn moved(m: &Mesh, f: impl Fn(DVec3) -> DVec3) -> Mesh {
-    mesh(
-        m.positions().iter().map(|&p| f(p)).collect(),
-        m.triangles().to_vec(),
-    )
+pub(crate) fn moved(m: &Mesh, f: impl Fn(DVec3) -> DVec3) -> Mesh {
+    let positions = m.positions().iter().map(|&p| f(p)).collect();
+    mesh(positions, m.triangles().to_vec())
 }
 
 fn square() -> Mesh {
@@ -44,14 +42,8 @@ fn square() -> Mesh {
     mesh(positions, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-fn cube() -> Mesh {
-    let corner = |i: u32| {
-        DVec3::new(
-            f64::from(i & 1),
-            f64::from(i >> 1 & 1),
-            f64::from(i >> 2 & 1),
-        )
-    };
+pub(crate) fn cube() -> Mesh {
+    let corner = |i: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1)));
     let quads = [
         [0, 2, 3, 1],
         [4, 5, 7, 6],
@@ -60,13 +52,10 @@ fn cube() -> Mesh {
         [0, 4, 6, 2],
         [1, 3, 7, 5],
     ];
-    mesh(
-        (0..8).map(corner).collect(),
-        quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    )
+    let halves = quads
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    mesh((0..8).map(corner).collect(), halves.collect())
 }
 
 /// An octahedron with every triangle divided into four `levels` times, on the unit sphere.
@@ -79,14 +68,12 @@ fn sphere(levels: u32) -> Vec<[DVec3; 3]> {
             }
         }
     }
+    let four = |[a, b, c]: [DVec3; 3]| {
+        let [ab, bc, ca] = [(a + b), (b + c), (c + a)].map(DVec3::normalize);
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    };
     for _ in 0..levels {
-        triangles = triangles
-            .iter()
-            .flat_map(|&[a, b, c]| {
-                let [ab, bc, ca] = [(a + b), (b + c), (c + a)].map(DVec3::normalize);
-                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-            })
-            .collect();
+        triangles = triangles.into_iter().flat_map(four).collect();
     }
     triangles
 }
@@ -97,16 +84,11 @@ fn distance(reference: &Mesh, candidate: &Mesh, samples: u32) -> SurfaceDistance
 
 #[test]
 fn parallel_squares_are_everywhere_as_far_apart_as_their_planes() {
-    let found = distance(
-        &square(),
-        &moved(&square(), |p| p + DVec3::new(0.0, 0.0, 0.25)),
-        1000,
-    );
+    let above = moved(&square(), |p| p + DVec3::new(0.0, 0.0, 0.25));
+    let found = distance(&square(), &above, 1000);
     for side in [found.to_candidate, found.to_reference] {
-        assert_eq!(
-            (side.absolute.mean, side.absolute.rms, side.absolute.max),
-            (0.25, 0.25, 0.25)
-        );
+        let Distances { mean, rms, max } = side.absolute;
+        assert_eq!([mean, rms, max], [0.25; 3]);
     }
     assert!((found.diagonal - 2_f64.sqrt()).abs() < 1e-15);
     let relative = found.relative().expect("a square has a size");
@@ -115,11 +97,8 @@ fn parallel_squares_are_everywhere_as_far_apart_as_their_planes() {
 
 #[test]
 fn a_cube_beside_a_cube_has_the_distances_of_the_integral() {
-    let found = distance(
-        &cube(),
-        &moved(&cube(), |p| p + DVec3::new(3.0, 0.0, 0.0)),
-        10_000,
-    );
+    let beside = moved(&cube(), |p| p + DVec3::new(3.0, 0.0, 0.0));
+    let found = distance(&cube(), &beside, 10_000);
     // Distance 3 - x: 3 and 2 on two faces, 2.5 in the mean on four; its square 9, 4 and 19/3.
     let side = found.to_candidate;
     assert!((side.absolute.mean - 2.5).abs() < 1e-12, "{side:?}");
@@ -144,10 +123,8 @@ fn concentric_spheres_are_as_far_apart_as_their_radii() {
 #[test]
 fn a_missing_part_shows_only_from_the_side_that_has_it() {
     let far = moved(&square(), |p| p + DVec3::new(0.0, 0.0, 7.0));
-    let both = mesh(
-        [square().positions(), far.positions()].concat(),
-        vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
-    );
+    let positions = [square().positions(), far.positions()].concat();
+    let both = mesh(positions, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
     let found = distance(&both, &square(), 1000);
     // Centroids are rounded off their plane.
     assert!(found.to_reference.absolute.max < 1e-14);
@@ -173,11 +150,8 @@ fn a_spike_of_one_vertex_is_never_missed() {
 fn an_unused_vertex_is_no_part_of_a_surface() {
     let mut positions = square().positions().to_vec();
     positions.push(DVec3::splat(100.0));
-    let found = distance(
-        &square(),
-        &mesh(positions, square().triangles().to_vec()),
-        10,
-    );
+    let same = mesh(positions, square().triangles().to_vec());
+    let found = distance(&square(), &same, 10);
     assert!(found.absolute().max < 1e-14);
 }
 
@@ -190,30 +164,22 @@ fn surfaces_without_area_are_measured_at_their_vertices() {
     assert!((found.to_candidate.absolute.mean - expected).abs() < 1e-15);
     assert_eq!(found.to_reference.absolute.max, 2.0);
     let back = distance(&point, &segment, 10);
-    assert_eq!(
-        (back.relative(), back.diagonal),
-        (None, 0.0),
-        "a point has no diagonal"
-    );
+    let size = (back.relative(), back.diagonal);
+    assert_eq!(size, (None, 0.0), "a point has no diagonal");
     assert_eq!(back.to_candidate.absolute.mean, 2.0);
 }
 
 #[test]
 fn sizes_near_the_ends_of_f64_give_the_same_relative_distances() {
-    let (a, b) = (
-        cube(),
-        moved(&cube(), |p| p * 1.25 + DVec3::new(0.125, 0.5, -0.25)),
-    );
+    let a = cube();
+    let b = moved(&a, |p| p * 1.25 + DVec3::new(0.125, 0.5, -0.25));
     let expected = distance(&a, &b, 500);
     for exponent in [-900, -100, 100, 1000] {
         let scale = 2_f64.powi(exponent);
         let found = distance(&moved(&a, |p| p * scale), &moved(&b, |p| p * scale), 500);
         assert_eq!(found.relative(), expected.relative(), "2^{exponent}");
-        assert_eq!(
-            found.absolute().max,
-            expected.absolute().max * scale,
-            "2^{exponent}"
-        );
+        let max = expected.absolute().max * scale;
+        assert_eq!(found.absolute().max, max, "2^{exponent}");
     }
 }
 
@@ -245,11 +211,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn every_region_of_a_triangle_has_its_closest_point() {
-    let t = [
-        DVec3::ZERO,
-        DVec3::new(4.0, 0.0, 0.0),
-        DVec3::new(0.0, 4.0, 0.0),
-    ];
+    let t = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
     for (p, q) in [
         ([1.0, 1.0, 3.0], [1.0, 1.0, 0.0]),
         ([-1.0, -2.0, 1.0], [0.0, 0.0, 0.0]),
@@ -264,14 +226,10 @@ fn every_region_of_a_triangle_has_its_closest_point() {
     }
     // Segment and point.
     let segment = [DVec3::ZERO, DVec3::X, DVec3::X * 4.0];
-    assert_eq!(
-        closest_point(DVec3::new(3.0, 2.0, 0.0), segment),
-        (DVec3::X * 3.0, 4.0)
-    );
-    assert_eq!(
-        closest_point(DVec3::Y, [DVec3::ZERO; 3]),
-        (DVec3::ZERO, 1.0)
-    );
+    let found = closest_point(DVec3::new(3.0, 2.0, 0.0), segment);
+    assert_eq!(found, (DVec3::X * 3.0, 4.0));
+    let found = closest_point(DVec3::Y, [DVec3::ZERO; 3]);
+    assert_eq!(found, (DVec3::ZERO, 1.0));
 }
 
 /// Corners on a coarse grid (ties, degenerate triangles) or nearly collinear.

@@ -120,7 +120,7 @@ fn draw(mesh: &Mesh, view: &View, set: &ViewSet, bug: Bug) -> Grid<SampleKey> {
                 continue;
             }
             let weights = [cross(p, b, c), cross(a, p, c), cross(a, b, p)];
-            let mut edges = [[b, c], [c, a], [a, b]].iter().zip(weights);
+            let mut edges = [[b, c], [c, a], [a, b]].into_iter().zip(weights);
             let covers = edges.all(|([u, v], e)| {
                 let (dx, dy) = (v[0] - u[0], v[1] - u[1]);
                 let owned = dy < 0 || (dy == 0 && dx > 0) || bug == Bug::DroppedFillRule;
