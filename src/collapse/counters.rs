@@ -18,6 +18,11 @@ pub enum Stop {
         /// Number of the edges left that each reason blocks.
         refusals: Refusals,
     },
+    /// The pieces that are seen alone are more than wanted, a triangle of each; what is seen goes before the target.
+    VisiblePieces {
+        /// Number of the pieces that a view sees.
+        pieces: usize,
+    },
     /// The input already had no more triangles than wanted; it is returned as it is.
     TargetAboveInput,
 }

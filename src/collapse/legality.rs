@@ -19,8 +19,10 @@ use crate::num::Each;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
-    /// Holes, handles, components, boundaries and non-manifold curves stay as they are.
+    /// As preserved until no edge may collapse any more; then, only as far as the target needs, what [`Concession`] lists.
     #[default]
+    Auto,
+    /// Holes, handles, components, boundaries, non-manifold curves and the course of seams stay as they are.
     Preserve,
     /// Any edge may be collapsed (Lindstrom & Turk 2000, section 5.2); faces that coincide become one.
     Free,
@@ -37,6 +39,70 @@ pub struct Rules {
     /// any fold. Where an edge is sharper already, it may stay so.
     #[serde(default = "no_fold")]
     pub fold_cosine: f64,
+    /// Let pieces that are seen vanish with the topology; else [`Topology::Auto`] leaves a triangle of each.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub drop_pieces: bool,
+    /// What has given way so far; more only in a run under [`Topology::Auto`].
+    #[serde(skip)]
+    pub concession: Concession,
+}
+
+/// What gives way, in this order and only as far as the target needs, where no edge may collapse any more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Concession {
+    /// Nothing.
+    #[default]
+    None,
+    /// The course of seams: a face may take the values of the chart beside it.
+    Seams,
+    /// Pieces that no view sees may vanish. Before the topology, which may open what hides them.
+    UnseenPieces,
+    /// Holes may close and parts may merge; every piece that is seen keeps a triangle.
+    Topology,
+}
+
+impl Concession {
+    /// The name, as a phrase that `give way` follows.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "nothing",
+            Self::Seams => "seams",
+            Self::UnseenPieces => "unseen pieces",
+            Self::Topology => "topology",
+        }
+    }
+}
+
+impl Rules {
+    /// The rules that a run goes through one after the other while its target is not met.
+    pub fn steps(self) -> impl Iterator<Item = Self> {
+        use Concession::{None, Seams, Topology as Holes, UnseenPieces};
+        let count = if self.topology == Topology::Auto {
+            4
+        } else {
+            1
+        };
+        let steps = [None, Seams, UnseenPieces, Holes].into_iter().take(count);
+        steps.map(move |concession| Self { concession, ..self })
+    }
+
+    /// True where the topology around an edge need not be preserved.
+    fn is_topology_free(self, live: &LiveMesh, ends: [u32; 2]) -> bool {
+        self.topology == Topology::Free
+            || self.concession == Concession::Topology
+            || self.concession == Concession::UnseenPieces && is_expendable(live, ends)
+    }
+
+    /// True where the star may vanish as a whole, though faces are left elsewhere.
+    fn may_vanish(self, live: &LiveMesh, ends: [u32; 2]) -> bool {
+        self.concession < Concession::UnseenPieces || self.drop_pieces || is_expendable(live, ends)
+    }
+}
+
+fn is_expendable(live: &LiveMesh, ends: [u32; 2]) -> bool {
+    ends.iter().all(|&v| live.is_expendable(v))
 }
 
 /// Sharper than 143 degrees is a fold, not a feature.
@@ -47,9 +113,11 @@ const fn no_fold() -> f64 {
 impl Default for Rules {
     fn default() -> Self {
         Self {
-            topology: Topology::Preserve,
+            topology: Topology::default(),
             normal_cosine: 0.2,
             fold_cosine: no_fold(),
+            drop_pieces: false,
+            concession: Concession::None,
         }
     }
 }
@@ -144,13 +212,15 @@ pub const STAR_LIMIT: usize = 512;
 pub fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
     // Where faces are left elsewhere, the star may vanish as a whole.
     let everything = live.triangle_count() <= star.faces.len();
-    if everything && !star.faces.iter().any(|f| f.survives) {
+    let vanishes = !star.faces.iter().any(|f| f.survives);
+    if vanishes && (everything || !rules.may_vanish(live, star.ends)) {
         return Err(Refusal::LastTriangle);
     }
-    if rules.topology == Topology::Preserve {
+    let free = rules.is_topology_free(live, star.ends);
+    if !free {
         topology(star)?;
     }
-    let feature = features(star, rules)?;
+    let feature = features(star, rules, free)?;
     let locked = star.ends.each(|v| live.is_locked(v));
     match (locked, feature) {
         ([false, false], anchor) => Ok(anchor),
@@ -189,9 +259,9 @@ fn topology(star: &EdgeStar) -> Result<(), Refusal> {
 }
 
 /// Seams and borders of materials keep their course (notes: section 3.4, rules a to d).
-fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
+fn features(star: &EdgeStar, rules: Rules, free: bool) -> Result<Anchor, Refusal> {
     let complex = star.spokes.iter().any(|s| s.faces[0] > 2 || s.faces[1] > 2);
-    if rules.topology == Topology::Free && (complex || star.edge_faces > 2) {
+    if free && (complex || star.edge_faces > 2) {
         return Ok(Anchor::Free);
     }
     let degree = star.feature_degree;
@@ -206,6 +276,7 @@ fn features(star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
         [false, false] => Ok(Anchor::Free),
         [true, false] => Ok(Anchor::At(0)),
         [false, true] => Ok(Anchor::At(1)),
+        [true, true] if rules.concession >= Concession::Seams => Ok(Anchor::Free),
         [true, true] => Err(refusal),
     }
 }

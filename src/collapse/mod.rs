@@ -44,7 +44,7 @@ pub use engine::{Engine, Heap, Key, Schedule};
 pub use flip::{check_uv_orientation, flip};
 pub use fold::{check_collapse_folds, check_folds, fold_amount, is_folded};
 pub use history::{Entry, Header, History, Record, Recorder};
-pub use legality::{Admitted, Anchor, Rules, Site, Topology};
+pub use legality::{Admitted, Anchor, Concession, Rules, Site, Topology};
 pub use live::{LiveMesh, NONE};
 pub use method::{Estimates, Evaluation, Method, MethodScratch, Plan, Proposal, Review};
 pub use observer::Observer;

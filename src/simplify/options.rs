@@ -121,7 +121,7 @@ impl Options {
         self
     }
 
-    /// Whether holes may close and parts may merge; they may not by default.
+    /// Whether seams may break, holes close and parts merge; by default only as far as the target needs.
     #[must_use]
     pub fn topology(mut self, topology: Topology) -> Self {
         self.rules.topology = topology;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Options, Report};
 use crate::{
-    collapse::{Counters, History, Stop},
+    collapse::{Concession, Counters, History, Stop},
     mesh::Mesh,
 };
 
@@ -13,6 +13,9 @@ use crate::{
 pub struct Phase {
     /// The method that ordered the collapses.
     pub method: &'static str,
+    /// What gave way because above the target no edge could collapse any more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub concession: Option<Concession>,
     /// Triangles before it.
     pub triangles_in: usize,
     /// Triangles after it.

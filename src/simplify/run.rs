@@ -4,12 +4,13 @@ use super::{MethodOptions, Options, Outcome, Phase, Report, repair_folds::repair
 use crate::{
     Error, Progress, Result, Silent,
     collapse::{
-        Counters, Engine, LiveMesh, Method, Recorder, Stop, TileOptions, Tileable, Tiling,
-        collapse_in_tiles,
+        Concession, Counters, Engine, LiveMesh, Method, Recorder, Rules, Stop, TileOptions,
+        Tileable, Tiling, collapse_in_tiles,
     },
     mesh::Mesh,
     parallel,
     view::frame_of,
+    visibility::{MeasureOptions, measure},
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
@@ -157,7 +158,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Collapses under one method until `triangles` are left or no more is possible.
+    /// Collapses under one method until `triangles` are left or no more is possible. Where that is the target of the run,
+    /// more and more gives way, as [`Rules::steps`] has it: each step that collapses anything is a phase.
     pub(super) fn phase(
         &mut self,
         name: &'static str,
@@ -165,19 +167,65 @@ impl<'a> Run<'a> {
         triangles: usize,
         start: PhaseStart,
     ) -> Result<Stop> {
+        let mut stop = self.step(name, method, triangles, (self.options.rules, start))?;
+        let mut seen_pieces = 0;
+        for rules in self.options.rules.steps().skip(1) {
+            let stuck = matches!(&stop, Stop::NoLegalCollapse { refusals } if !refusals.by_bound());
+            if !stuck || self.target != Some(triangles) {
+                break;
+            }
+            if rules.concession == Concession::UnseenPieces {
+                let seen = self.seen()?;
+                let [pieces, unseen] = self.live.expend_unseen(&seen);
+                seen_pieces = pieces - unseen;
+            }
+            let start = self.phase_start();
+            stop = self.step(name, method, triangles, (rules, start))?;
+        }
+        if matches!(stop, Stop::NoLegalCollapse { .. }) && seen_pieces > triangles {
+            stop = Stop::VisiblePieces {
+                pieces: seen_pieces,
+            };
+        }
+        Ok(stop)
+    }
+
+    /// By triangle id: whether any of the views around the mesh as it is now sees it (Zhang & Turk 2002).
+    fn seen(&self) -> Result<Vec<bool>> {
+        let mesh = self.live.to_mesh()?;
+        let visibility = measure(&mesh, &MeasureOptions::default(), self.progress)?;
+        let mut of_alive = visibility.triangles().iter().map(|&v| v > 0.0);
+        let ids = 0..self.live.triangle_ids();
+        let seen = ids.map(|t| self.live.triangle(t).is_some() && of_alive.next() == Some(true));
+        Ok(seen.collect())
+    }
+
+    /// Collapses under one method and the rules of one step.
+    fn step(
+        &mut self,
+        name: &'static str,
+        method: &mut dyn Method,
+        triangles: usize,
+        (rules, start): (Rules, PhaseStart),
+    ) -> Result<Stop> {
         let live = std::mem::take(&mut self.live);
-        let mut engine = Engine::new(live, self.options.rules, self.options.schedule)
+        let mut engine = Engine::new(live, rules, self.options.schedule)
             .with_counters(start.counters)
             .with_rank_measured(self.options.measure_rank);
         let stop = engine.run(method, triangles, &mut self.recorder, self.progress);
         let (live, counters) = engine.into_parts();
         self.live = live;
-        self.phases.push(Phase {
-            method: name,
-            triangles_in: start.triangles,
-            triangles_out: self.live.triangle_count(),
-            counters,
-        });
+        let concession = Some(rules.concession).filter(|&c| c != Concession::None);
+        let triangles_out = self.live.triangle_count();
+        if concession.is_none() || triangles_out < start.triangles {
+            self.phases.push(Phase {
+                method: name,
+                concession,
+                triangles_in: start.triangles,
+                triangles_out,
+                counters,
+            });
+        }
         stop
     }
 

@@ -157,9 +157,11 @@ impl LevelsArgs {
         let own = method.defaults().ok_or_else(|| bounded(method))?;
         let mut options = RunOptions::new(own, amount);
         options.unfold = false;
-        if self.topology_free {
-            options.rules.topology = Topology::Free;
-        }
+        options.rules.topology = if self.topology_free {
+            Topology::Free
+        } else {
+            Topology::Preserve
+        };
         match &mut options.method {
             MethodOptions::Image(own) => {
                 own.start = Start::Triangles(Start::Auto.triangles(Some(finest)) as u64);

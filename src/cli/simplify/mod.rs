@@ -73,9 +73,12 @@ pub(super) struct SimplifyArgs {
     /// Leave folds and flipped faces as the collapses made them; then every level of the history is a direct run's
     #[arg(long, hide_short_help = true)]
     keep_folds: bool,
-    /// Whether holes may close and parts may merge
-    #[arg(long, value_enum, default_value_t = Topology::Preserve)]
+    /// Whether seams may break, holes close and parts merge; auto: in that order, only as far as the target needs
+    #[arg(long, value_enum, default_value_t = Topology::Auto)]
     topology: Topology,
+    /// Let whole pieces vanish though they are seen, where the target needs it
+    #[arg(long)]
+    drop_pieces: bool,
     #[command(flatten)]
     image: ImageArgs,
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
@@ -151,6 +154,7 @@ impl SimplifyArgs {
         options.unfold &= !self.keep_folds;
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
+        options.rules.drop_pieces = self.drop_pieces;
         options.check()?;
         Ok(options)
     }

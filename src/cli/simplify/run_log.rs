@@ -43,9 +43,11 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
 
 fn tell_phase(phase: &Phase, terminal: &Terminal) {
     let c = &phase.counters;
+    let concession = phase.concession.map(|c| format!(", {} give way", c.name()));
     terminal.say(&format!(
-        "{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
+        "{}{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
         phase.method,
+        concession.unwrap_or_default(),
         phase.triangles_in,
         phase.triangles_out,
         c.collapses,
@@ -94,8 +96,12 @@ fn tell_stop(input: &Path, triangles_in: usize, outcome: &Outcome, terminal: &Te
                 outcome.mesh.triangles().len()
             ));
         }
+        Stop::VisiblePieces { pieces } => terminal.say(&format!(
+            "stopped with {} triangles: {pieces} separate pieces are seen, and each keeps one; try --drop-pieces",
+            outcome.mesh.triangles().len()
+        )),
         Stop::NoLegalCollapse { refusals } => terminal.say(&format!(
-            "stopped with {} triangles: no edge may be collapsed any more ({refusals}); try --topology free",
+            "stopped with {} triangles: no edge may be collapsed any more ({refusals})",
             outcome.mesh.triangles().len()
         )),
     }

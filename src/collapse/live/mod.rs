@@ -9,7 +9,7 @@ mod incidence;
 use glam::DVec3;
 
 use self::incidence::IncidenceLists;
-use super::{PatchFace, wedge::WedgeRows};
+use super::{PatchFace, pinch::Forest, wedge::WedgeRows};
 use crate::{
     mesh::{Materials, Mesh},
     num::{Each, Frame, Precision},
@@ -48,6 +48,8 @@ pub struct LiveMesh {
     free_edges: Vec<u32>,
     edges_at: IncidenceLists<Incident>,
     pub(super) locked: Vec<bool>,
+    /// Vertices of pieces that may vanish; empty where there are none.
+    expendable: Vec<bool>,
     /// Vertices whose faces are not all here, where there are any; see [`super::tiles`].
     frozen: Vec<bool>,
     pub(super) rows: WedgeRows,
@@ -249,6 +251,33 @@ impl LiveMesh {
     /// Where there is no such vertex.
     pub fn set_locked(&mut self, vertex: u32, locked: bool) {
         self.locked[vertex as usize] = locked;
+    }
+
+    /// True where the vertex belongs to a piece that may vanish.
+    pub fn is_expendable(&self, vertex: u32) -> bool {
+        self.expendable.get(vertex as usize).is_some_and(|&e| e)
+    }
+
+    /// Lets the pieces vanish of which no triangle is in `seen`, by triangle id, and returns the number of all pieces and
+    /// of those. A piece is what shares vertices. O(n).
+    pub fn expend_unseen(&mut self, seen: &[bool]) -> [usize; 2] {
+        let mut forest = Forest::of(self.positions.len());
+        let alive = |t: &usize| self.faces[*t][0] != NONE;
+        for [a, b, c] in self.faces.iter().copied().filter(|f| f[0] != NONE) {
+            forest.unite(a as usize, b as usize);
+            forest.unite(a as usize, c as usize);
+        }
+        let mut pieces = vec![None; self.positions.len()];
+        for t in (0..self.faces.len()).filter(alive) {
+            let root = forest.root(self.faces[t][0] as usize);
+            *pieces[root].get_or_insert(false) |= seen[t];
+        }
+        let is_unseen = |v: usize, forest: &mut Forest| pieces[forest.root(v)] == Some(false);
+        self.expendable = (0..pieces.len())
+            .map(|v| is_unseen(v, &mut forest))
+            .collect();
+        let all = pieces.iter().flatten();
+        [all.clone().count(), all.filter(|&&seen| !seen).count()]
     }
 
     /// The triangles at a vertex, in no particular order.

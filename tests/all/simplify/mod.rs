@@ -11,6 +11,7 @@ pub(crate) mod options;
 pub(crate) mod polish;
 mod progress;
 mod quadric;
+mod targets;
 mod tolerance;
 mod view_bounded;
 mod visibility_guided;
