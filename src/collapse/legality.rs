@@ -42,12 +42,12 @@ pub struct Rules {
     /// Let pieces that are seen vanish with the topology; else [`Topology::Auto`] leaves a triangle of each.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub drop_pieces: bool,
-    /// What has given way so far; more only in a run under [`Topology::Auto`].
+    /// The last of the concessions so far; none but in a run under [`Topology::Auto`].
     #[serde(skip)]
     pub concession: Concession,
 }
 
-/// What gives way, in this order and only as far as the target needs, where no edge may collapse any more.
+/// A rule that gives way, in this order and only as far as the target needs, where no edge may collapse any more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Concession {

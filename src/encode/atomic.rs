@@ -37,7 +37,7 @@ pub fn folder(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(|e| Error::io("create", path, e))
 }
 
-/// What gives a file its content, called once.
+/// A function that gives a file its content, called once.
 type Content<'a> = &'a mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
 
 /// [`write()`] without a type of its own for every content.

@@ -25,7 +25,7 @@ pub struct RenderOptions {
     pub samples: u32,
     /// Perspective or orthographic [default: perspective].
     pub projection: Projection,
-    /// How triangles are lit [default: flat].
+    /// Lighting of triangles [default: flat].
     pub shading: Shading,
     /// Which side is left out [default: none].
     pub cull: Cull,

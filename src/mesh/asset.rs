@@ -30,6 +30,6 @@ pub struct AssetPart {
     pub primitive: usize,
     /// From the coordinates that the primitive stores to those of the mesh; can be inverted.
     pub placement: DAffine3,
-    /// How often the default scene shows it.
+    /// Number of times that the default scene shows it.
     pub instances: usize,
 }

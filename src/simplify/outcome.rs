@@ -13,7 +13,7 @@ use crate::{
 pub struct Phase {
     /// The method that ordered the collapses.
     pub method: &'static str,
-    /// What gave way because above the target no edge could collapse any more.
+    /// The rule that gave way because above the target no edge could collapse any more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub concession: Option<Concession>,
     /// Triangles before it.

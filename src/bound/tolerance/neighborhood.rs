@@ -32,7 +32,7 @@ impl OldFace {
 /// The triangles around an edge, their prisms and the link.
 #[derive(Clone, Debug, Default)]
 pub struct Neighborhood {
-    /// What all else is relative to.
+    /// The origin that all else is relative to.
     pub(super) origin: DVec3,
     pub(super) faces: Vec<OldFace>,
     /// Of the faces, one each.

@@ -11,7 +11,7 @@ use crate::{
 pub(in crate::rooms::collapse) struct Blend<'a, const N: usize> {
     /// The values of each corner.
     pub values: [&'a [f64]; N],
-    /// What each corner counts.
+    /// The weight of each corner.
     pub weights: [f64; N],
 }
 

@@ -19,7 +19,7 @@ use crate::{
 /// Custom attributes that a mesh can tell apart.
 const CUSTOMS: usize = 256;
 
-/// What of the document's attributes the mesh carries.
+/// The attributes of the document that the mesh carries.
 pub(super) struct Channels<'a> {
     document: &'a Document,
     /// Names of custom attributes, by number.

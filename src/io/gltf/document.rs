@@ -26,7 +26,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_xmp_json_ld",
 ];
 
-/// What to do about a mesh under Draco compression. Version 4.5 of this tool was seen to decode it.
+/// The advice about a mesh under Draco compression. Version 4.5 of this tool was seen to decode it.
 pub(super) const DRACO: &str = "Draco compression (KHR_draco_mesh_compression) is not supported; decode the file first: \
                                 npx @gltf-transform/cli copy in.glb out.glb";
 

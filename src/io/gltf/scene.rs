@@ -12,7 +12,7 @@ use super::{
 };
 use crate::Result;
 
-/// How the default scene shows a mesh.
+/// The placement by which the default scene shows a mesh, and its count.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shown {
     /// The placement of its largest instance, by volume, the first of several; `None` where none can be inverted.

@@ -34,7 +34,7 @@ enum Channel {
     Halves,
     /// The changed bits of a 32-bit word, rotated.
     Word {
-        /// How far the encoder rotated them to the left. The specification does not say that decoding undoes it; the
+        /// Bits by which the encoder rotated them to the left. The specification does not say that decoding undoes it; the
         /// reference decoder does.
         rotation: u32,
     },

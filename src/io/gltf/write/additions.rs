@@ -1,9 +1,9 @@
-//! What comes after everything a document has: new views with their bytes, and new accessors.
+//! Additions to a document, after everything that it has: new views with their bytes, and new accessors.
 
 use super::json;
 use crate::io::gltf::accessor::Component;
 
-/// How an accessor stores its elements.
+/// The storage of an accessor's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Storage {
     pub component: Component,
@@ -53,7 +53,7 @@ pub(super) struct NewView {
     pub target: Option<usize>,
 }
 
-/// What is appended to a document: nothing that it has gets another number.
+/// Views and accessors to append to a document: nothing that it has gets another number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Additions {
     first_view: usize,

@@ -97,7 +97,7 @@ pub(super) fn embed(
     Ok(())
 }
 
-/// What the first bytes of an image say it is.
+/// The media type that the first bytes of an image show.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     let at = |offset: usize, sign: &[u8]| bytes.get(offset..).is_some_and(|b| b.starts_with(sign));
     let types: [(&[(usize, &[u8])], &str); 6] = [

@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::vertices::{Column, Vertices};
 use crate::{io::gltf::surface::PartSurface, mesh::ChannelKind, num::math};
 
-/// What is left of a part: its vertices in the order of their first use.
+/// The rest of a part after a run: its vertices in the order of their first use.
 pub(super) struct Left {
     pub groups: Vec<u32>,
     /// The vertex of the source, where it is one.
@@ -98,7 +98,7 @@ impl Left {
     }
 }
 
-/// What stands for a value that is absent, where the primitive has others.
+/// A value in place of one that is absent, where the primitive has others.
 fn absent(kind: ChannelKind, normal: DVec3) -> [f64; 8] {
     let mut value = [0.0; 8];
     match kind {

@@ -31,7 +31,7 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// What the source stores, if it has elements of so many components.
+    /// The elements of the source, if they have this number of components.
     fn elements(&self, accessor: Option<usize>, width: usize) -> Result<Option<Elements<'_>>> {
         let opened = accessor.map(|index| Elements::open(self.document, self.views, index));
         Ok(opened.transpose()?.filter(|e| e.width() == width))
@@ -240,7 +240,7 @@ fn write(
     Ok(additions.vertices(storage, &written, slot.semantic == "POSITION"))
 }
 
-/// How the values of a place are stored: as the source does where they are no lengths or directions.
+/// The storage of the values of a place: as the source does where they are no lengths or directions.
 fn storage(kind: ChannelKind, slot: &Slot, elements: Option<&Elements<'_>>) -> Storage {
     let floats = Storage::floats(slot.width);
     let as_stored = elements.map(|e| Storage {

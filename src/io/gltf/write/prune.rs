@@ -1,4 +1,4 @@
-//! What nothing refers to any more: its bytes go, but no index changes.
+//! Pruning: the bytes go that nothing refers to any more, but no index changes.
 
 use std::collections::BTreeSet;
 
