@@ -132,7 +132,7 @@ mod tests {
             [&[1.0, 0.0, 0.0, 1.0], &[0.0, 1.0, 0.0, -1.0]],
             [0.25, 0.75],
         );
-        assert_eq!(found[3], -1.0);
+        assert_eq!(found[3..], [-1.0]);
         assert!((found[0] * found[0] + found[1] * found[1] - 1.0).abs() < 1e-15);
     }
 }

@@ -35,8 +35,11 @@ pub use probe::probe;
 pub use sphere::{icosphere, shells, tetrahedron};
 pub use torus::{interlocking_tori, textured_torus, torus};
 
+/// A mesh by name, made when it is asked for.
+type Named = (&'static str, fn() -> Mesh);
+
 /// Meshes by name, of a size that suits a demonstration.
-pub const NAMED: [(&str, fn() -> Mesh); 14] = [
+pub const NAMED: [Named; 14] = [
     ("tetrahedron", tetrahedron),
     ("cube", cube),
     ("icosphere", || icosphere(4)),

@@ -2,7 +2,6 @@
 
 #![expect(
     clippy::float_cmp,
-    clippy::approx_constant,
     clippy::print_stderr,
     reason = "published digits, values that are exact, and figures for the record"
 )]

@@ -399,10 +399,10 @@ fn a_textured_model_is_what_tobj_alone_makes_of_it() {
     for (at, (&corner, &wedge)) in corners.zip(wedges).enumerate() {
         let [v, vt] = [plain.indices[at], plain.texcoord_indices[at]].map(|i| i as usize);
         let p = loaded.mesh.positions()[corner as usize].to_array();
-        let expected = [0, 1, 2].map(|i| bits(plain.positions[3 * v + i].into()));
+        let expected = [0, 1, 2].map(|i| bits(plain.positions[3 * v + i]));
         assert_eq!(p.map(bits), expected);
         let q = attributes.value(uv, wedge);
-        let expected = [0, 1].map(|i| bits(plain.texcoords[2 * vt + i].into()));
+        let expected = [0, 1].map(|i| bits(plain.texcoords[2 * vt + i]));
         assert_eq!([q[0], q[1]].map(bits), expected);
     }
 }

@@ -192,7 +192,7 @@ fn a_primitive_that_changed_is_appended_and_nothing_else_moves() {
         if name == "TEXCOORD_1" {
             assert_eq!(
                 is.elements[0],
-                [0.250_003_81_f32, 0.500_007_63].map(f64::from)
+                [0.250_003_8_f32, 0.500_007_6].map(f64::from)
             );
             continue;
         }
@@ -320,7 +320,7 @@ fn weights_of_new_vertices_sum_exactly() {
     let weights = accessor(asset(&again), &primitive["attributes"]["WEIGHTS_0"]);
     assert_eq!(weights.entry["componentType"], U8);
     for element in weights.elements {
-        assert_eq!(element.iter().sum::<f64>(), 255.0);
+        assert_eq!(element.iter().sum::<f64>() as u32, 255);
     }
 }
 

@@ -100,7 +100,8 @@ pub(super) fn embed(
 /// The media type that the first bytes of an image show.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     let at = |offset: usize, sign: &[u8]| bytes.get(offset..).is_some_and(|b| b.starts_with(sign));
-    let types: [(&[(usize, &[u8])], &str); 6] = [
+    type Sign<'a> = (usize, &'a [u8]);
+    let types: [(&[Sign<'_>], &str); 6] = [
         (&[(0, b"\x89PNG\r\n\x1a\n")], "image/png"),
         (&[(0, b"\xff\xd8\xff")], "image/jpeg"),
         (&[(0, b"RIFF"), (8, b"WEBP")], "image/webp"),
@@ -108,7 +109,7 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
         (&[(0, b"\xabKTX 20\xbb\r\n\x1a\n")], "image/ktx2"),
         (&[(0, b"DDS ")], "image/vnd-ms.dds"),
     ];
-    let fits = |signs: &[(usize, &[u8])]| signs.iter().all(|&(offset, sign)| at(offset, sign));
+    let fits = |signs: &[Sign<'_>]| signs.iter().all(|&(offset, sign)| at(offset, sign));
     types
         .into_iter()
         .find(|(signs, _)| fits(signs))
