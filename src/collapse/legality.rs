@@ -19,7 +19,8 @@ use crate::num::Each;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
-    /// As preserved until no edge may collapse any more; then, only as far as the target needs, what [`Concession`] lists.
+    /// As preserved until no edge may collapse any more; then, only as far as the target needs, seams lose their course,
+    /// pieces vanish that no view sees, and holes close and parts merge, in this order.
     #[default]
     Auto,
     /// Holes, handles, components, boundaries, non-manifold curves and the course of seams stay as they are.

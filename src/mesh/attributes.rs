@@ -28,7 +28,7 @@ pub enum ChannelKind {
     Delta(u16),
     /// An attribute that only its file knows, such as an id: it is taken from the nearest corner, never averaged.
     Custom {
-        /// Number among the attributes of the file, which has their names ([`Asset::customs`](super::Asset::customs)).
+        /// Number among the attributes of the file, which has their names (`Asset::customs`).
         number: u8,
         /// Values per wedge: 1 to 4.
         width: u8,
