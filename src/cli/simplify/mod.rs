@@ -73,7 +73,8 @@ pub(super) struct SimplifyArgs {
     /// Leave folds and flipped faces as the collapses made them; then every level of the history is a direct run's
     #[arg(long, hide_short_help = true)]
     keep_folds: bool,
-    /// Whether seams may break, holes close and parts merge; auto: in that order, only as far as the target needs
+    /// Whether seams may break, holes close and parts merge; auto: only as far as the target needs, pieces that no view sees
+    /// before holes
     #[arg(long, value_enum, default_value_t = Topology::Auto)]
     topology: Topology,
     /// Let whole pieces vanish though they are seen, where the target needs it
