@@ -32,6 +32,9 @@ pub enum Stop {
 pub struct Counters {
     /// Collapses committed.
     pub collapses: u64,
+    /// Those of them that broke a seam: it lost its course, and the area beside it another chart's look.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub seams_broken: u64,
     /// Edges evaluated, those of rank measurements not counted.
     pub evaluations: u64,
     /// Costs of edges that were estimated, from sums or roughly.
@@ -55,6 +58,7 @@ impl Counters {
     /// Adds the counts of another run, its ranks excepted.
     pub(super) fn add(&mut self, other: &Self) {
         self.collapses += other.collapses;
+        self.seams_broken += other.seams_broken;
         self.evaluations += other.evaluations;
         self.estimates += other.estimates;
         self.evaluations_if_eager += other.evaluations_if_eager;

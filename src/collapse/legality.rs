@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EdgeStar, Evaluation, LiveMesh, Patch, Refusal, check_collapse_folds, edge_star::normal,
+    EdgeStar, Evaluation, LiveMesh, Patch, Refusal, check_collapse_folds, edge_star::normal, wedge,
 };
 use crate::num::Each;
 
@@ -19,8 +19,9 @@ use crate::num::Each;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
-    /// As preserved until no edge may collapse any more; then, only as far as the target needs, seams lose their course,
-    /// pieces vanish that no view sees, and holes close and parts merge, in this order.
+    /// As preserved where the target can be met so. Only as far as it needs, seams lose their course, from the start of a
+    /// run and where least is lost; then, where no edge may collapse any more, pieces vanish that no view sees, and holes
+    /// close and parts merge, in this order.
     #[default]
     Auto,
     /// Holes, handles, components, boundaries, non-manifold curves and the course of seams stay as they are.
@@ -86,6 +87,7 @@ impl Rules {
             1
         };
         let steps = [None, Seams, UnseenPieces, Holes].into_iter().take(count);
+        let steps = steps.filter(move |&step| step >= self.concession);
         steps.map(move |concession| Self { concession, ..self })
     }
 
@@ -152,6 +154,8 @@ pub struct Site<'a> {
     pub star: &'a EdgeStar,
     /// Places that the rules leave to the new vertex.
     pub anchor: Anchor,
+    /// A seam would lose its course, as [`Concession::Seams`] has it.
+    pub breaks_seam: bool,
     /// The rules.
     pub rules: Rules,
     /// Accuracy that is asked for: [`Evaluation::Exact`] unless the method's plan has rough evaluations.
@@ -164,10 +168,12 @@ impl<'a> Site<'a> {
     /// # Errors
     /// The rule that forbids this collapse wherever the new vertex lies.
     pub fn new(live: &'a LiveMesh, star: &'a EdgeStar, rules: Rules) -> Result<Self, Refusal> {
+        let (anchor, breaks_seam) = anchor(live, star, rules)?;
         Ok(Self {
             live,
             star,
-            anchor: anchor(live, star, rules)?,
+            anchor,
+            breaks_seam,
             rules,
             accuracy: Evaluation::Exact,
         })
@@ -178,6 +184,15 @@ impl<'a> Site<'a> {
         match self.anchor {
             Anchor::Free => None,
             Anchor::At(end) => Some(self.star.points[end]),
+        }
+    }
+
+    /// The area (frame units squared) that a broken seam gives to another chart; 0 where no seam breaks.
+    pub fn seam_loss(&self, position: Admitted) -> f64 {
+        if self.breaks_seam {
+            wedge::displaced_area(self.star, position.0)
+        } else {
+            0.0
         }
     }
 
@@ -192,6 +207,10 @@ impl<'a> Site<'a> {
         }
         shape(self.star, position, self.rules)?;
         check_collapse_folds(self.live, self.star, position, self.rules)?;
+        let may_turn = self.rules.concession == Concession::Topology;
+        if !may_turn && wedge::turns_texture(self.live, self.star, position) {
+            return Err(Refusal::Mirror);
+        }
         Ok(Admitted(position))
     }
 
@@ -206,11 +225,12 @@ impl<'a> Site<'a> {
 /// method may have a lower one: [`Plan::star_limit`](super::Plan::star_limit).
 pub const STAR_LIMIT: usize = 512;
 
-/// Finds the places that the rules which do not depend on the new position leave to the new vertex.
+/// Finds the places that the rules which do not depend on the new position leave to the new vertex, and whether a seam
+/// loses its course.
 ///
 /// # Errors
 /// The first rule that forbids the collapse altogether.
-pub fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<Anchor, Refusal> {
+fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, bool), Refusal> {
     // Where faces are left elsewhere, the star may vanish as a whole.
     let everything = live.triangle_count() <= star.faces.len();
     let vanishes = !star.faces.iter().any(|f| f.survives);
@@ -221,14 +241,15 @@ pub fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<Anchor, 
     if !free {
         topology(star)?;
     }
-    let feature = features(star, rules, free)?;
+    let (feature, breaks_seam) = features(star, rules, free)?;
     let locked = star.ends.each(|v| live.is_locked(v));
-    match (locked, feature) {
-        ([false, false], anchor) => Ok(anchor),
-        ([true, false], Anchor::Free | Anchor::At(0)) => Ok(Anchor::At(0)),
-        ([false, true], Anchor::Free | Anchor::At(1)) => Ok(Anchor::At(1)),
-        _ => Err(Refusal::Locked),
-    }
+    let anchor = match (locked, feature) {
+        ([false, false], anchor) => anchor,
+        ([true, false], Anchor::Free | Anchor::At(0)) => Anchor::At(0),
+        ([false, true], Anchor::Free | Anchor::At(1)) => Anchor::At(1),
+        _ => return Err(Refusal::Locked),
+    };
+    Ok((anchor, breaks_seam))
 }
 
 fn topology(star: &EdgeStar) -> Result<(), Refusal> {
@@ -259,11 +280,12 @@ fn topology(star: &EdgeStar) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Seams and borders of materials keep their course (notes: section 3.4, rules a to d).
-fn features(star: &EdgeStar, rules: Rules, free: bool) -> Result<Anchor, Refusal> {
+/// Seams and borders of materials keep their course (notes: section 3.4, rules a to d); the second is true where one
+/// does not.
+fn features(star: &EdgeStar, rules: Rules, free: bool) -> Result<(Anchor, bool), Refusal> {
     let complex = star.spokes.iter().any(|s| s.faces[0] > 2 || s.faces[1] > 2);
     if free && (complex || star.edge_faces > 2) {
-        return Ok(Anchor::Free);
+        return Ok((Anchor::Free, false));
     }
     let degree = star.feature_degree;
     // Along a feature only its ends and branchings stay, beside one all that lies on it.
@@ -274,10 +296,10 @@ fn features(star: &EdgeStar, rules: Rules, free: bool) -> Result<Anchor, Refusal
         (degree.each(|d| d > 0), Refusal::FeaturePinch)
     };
     match stays {
-        [false, false] => Ok(Anchor::Free),
-        [true, false] => Ok(Anchor::At(0)),
-        [false, true] => Ok(Anchor::At(1)),
-        [true, true] if rules.concession >= Concession::Seams => Ok(Anchor::Free),
+        [false, false] => Ok((Anchor::Free, false)),
+        [true, false] => Ok((Anchor::At(0), false)),
+        [false, true] => Ok((Anchor::At(1), false)),
+        [true, true] if rules.concession >= Concession::Seams => Ok((Anchor::Free, true)),
         [true, true] => Err(refusal),
     }
 }

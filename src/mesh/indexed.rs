@@ -39,6 +39,15 @@ impl Materials {
             .copied()
             .unwrap_or(Self::NONE)
     }
+
+    /// Number of times that a scene shows a triangle: that of its part in a document, 1 elsewhere.
+    #[must_use]
+    pub fn instances(&self, triangle: usize) -> usize {
+        let name = self.names.get(self.of(triangle) as usize);
+        let asset = self.asset.as_ref().zip(name);
+        let part = asset.and_then(|(asset, name)| asset.parts.iter().find(|p| p.name == *name));
+        part.map_or(1, |p| p.instances)
+    }
 }
 
 /// Everything a [`Mesh`] is made of, before it is validated.

@@ -14,6 +14,7 @@ mod outcome;
 pub mod quadric;
 mod repair_folds;
 mod run;
+mod seams;
 mod target;
 pub mod tolerance;
 pub mod view_bounded;
@@ -21,7 +22,7 @@ pub mod visibility;
 
 /// The history that an [`Outcome`] carries to rebuild any level, the type that rebuilds it, and the enums of
 /// [`Options`].
-pub use crate::collapse::{History, Replay, Rules, Schedule, Stop, Topology};
+pub use crate::collapse::{History, Locks, Replay, Rules, Schedule, Stop, Topology};
 pub use methods::{MethodName, MethodOptions, Report};
 pub use options::Options;
 pub use outcome::{Outcome, Phase};

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     Error, Result,
-    collapse::{Rules, Schedule, Topology},
+    collapse::{Locks, Rules, Schedule, Topology},
     view::ViewsName,
 };
 
@@ -42,6 +42,9 @@ pub struct Options {
     pub error_rms: Option<f64>,
     /// The rules that collapses obey.
     pub rules: Rules,
+    /// Curves of the input whose vertices stay where they are.
+    #[serde(default, skip_serializing_if = "Locks::is_none")]
+    pub locks: Locks,
     /// When edges are evaluated again.
     pub schedule: Schedule,
     /// Measure the true rank of every n-th collapse among all legal ones; 0 is off. Changes no result.
@@ -65,6 +68,7 @@ impl Options {
         let own = method.as_run();
         Self {
             rules: own.rules(),
+            locks: Locks::default(),
             schedule: own.schedule(),
             unfold: own.only_orders(),
             method,
@@ -125,6 +129,27 @@ impl Options {
     #[must_use]
     pub fn topology(mut self, topology: Topology) -> Self {
         self.rules.topology = topology;
+        self
+    }
+
+    /// Keeps the vertices of edges with one triangle where they are.
+    #[must_use]
+    pub fn lock_border(mut self) -> Self {
+        self.locks.border = true;
+        self
+    }
+
+    /// Keeps the vertices of edges where they are at which texture coordinates or colours jump.
+    #[must_use]
+    pub fn lock_seams(mut self) -> Self {
+        self.locks.seams = true;
+        self
+    }
+
+    /// Keeps the vertices of edges between materials, or between the parts of a document, where they are.
+    #[must_use]
+    pub fn lock_materials(mut self) -> Self {
+        self.locks.materials = true;
         self
     }
 

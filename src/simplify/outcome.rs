@@ -34,6 +34,8 @@ pub struct Outcome {
     pub history: History,
     /// Why the run ended.
     pub stop: Stop,
+    /// Number of vertices that the locks kept where they are; 0 without locks.
+    pub locked_vertices: usize,
     /// The stretches of the run, in order.
     pub phases: Vec<Phase>,
     /// The options as they were used: nothing in them is left to a default.

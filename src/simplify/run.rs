@@ -63,11 +63,12 @@ fn in_pool(
     progress: &dyn Progress,
     body: &Body<'_>,
 ) -> Result<Outcome> {
-    let run = Run::new(mesh, options, progress)?;
+    let mut run = Run::new(mesh, options, progress)?;
     if mesh.triangles().len() <= run.least() {
         let report = options.method.as_run().report_of_copy(mesh);
         return run.outcome(Stop::TargetAboveInput, report);
     }
+    run.settle_seams()?;
     body(&options.method, run)
 }
 
@@ -78,6 +79,8 @@ pub(super) struct Run<'a> {
     pub(super) options: Options,
     /// Triangles to reach; `None` where only an error limits the run.
     pub(super) target: Option<usize>,
+    /// Number of locked vertices.
+    locked: usize,
     pub(super) recorder: Recorder,
     pub(super) phases: Vec<Phase>,
     pub(super) progress: &'a dyn Progress,
@@ -97,9 +100,16 @@ impl<'a> Run<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self> {
         let frame = frame_of(mesh);
+        let mut live = LiveMesh::new(mesh, frame);
+        let locked = if options.locks.is_none() {
+            0
+        } else {
+            live.lock(options.locks)
+        };
         Ok(Self {
             mesh,
-            live: LiveMesh::new(mesh, frame),
+            live,
+            locked,
             options: options.clone(),
             target: options.target.of(mesh.triangles().len())?,
             recorder: Recorder::new(mesh, frame),
@@ -254,6 +264,7 @@ impl<'a> Run<'a> {
             mesh,
             history: self.recorder.finish(json),
             stop,
+            locked_vertices: self.locked,
             phases: self.phases,
             options: self.options,
             report,

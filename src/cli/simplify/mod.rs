@@ -80,6 +80,15 @@ pub(super) struct SimplifyArgs {
     /// Let whole pieces vanish though they are seen, where the target needs it
     #[arg(long)]
     drop_pieces: bool,
+    /// Keep the vertices of open borders where they are
+    #[arg(long)]
+    lock_border: bool,
+    /// Keep the vertices of texture and colour seams where they are
+    #[arg(long)]
+    lock_seams: bool,
+    /// Keep the vertices between materials, or between the parts of a document, where they are
+    #[arg(long)]
+    lock_materials: bool,
     #[command(flatten)]
     image: ImageArgs,
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
@@ -116,6 +125,12 @@ struct Summary<'a> {
     /// V(M) of the input; only for the method that is guided by it.
     v_mesh: Option<f64>,
     phases: &'a [crate::simplify::Phase],
+    /// Vertices that locks kept where they are.
+    #[serde(skip_serializing_if = "is_zero")]
+    locked_vertices: usize,
+    /// Triangles that the scene draws, each as often as its part is shown; only where that is not the number stored.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    triangles_drawn: Option<[usize; 2]>,
     /// The proven distance from the input; only for the method that keeps one.
     #[serde(skip_serializing_if = "Option::is_none")]
     guarantee: Option<Guarantee>,
@@ -125,6 +140,11 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
     content_sha256: String,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl SimplifyArgs {
@@ -156,6 +176,9 @@ impl SimplifyArgs {
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
         options.rules.drop_pieces = self.drop_pieces;
+        options.locks.border = self.lock_border;
+        options.locks.seams = self.lock_seams;
+        options.locks.materials = self.lock_materials;
         options.check()?;
         Ok(options)
     }
@@ -215,6 +238,8 @@ pub(super) fn run(
         v_mesh: outcome.v_mesh(),
         guarantee: outcome.guarantee(),
         phases: &outcome.phases,
+        locked_vertices: outcome.locked_vertices,
+        triangles_drawn: run_log::triangles_drawn(&mesh, &outcome),
         polish: outcome.polish(),
         comparison: outcome.comparison(),
         content_sha256: content_sha256(&outcome.mesh),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::{
     cli::terminal::Terminal,
+    mesh::Mesh,
     simplify::{Outcome, Phase, Stop, image::PolishCounters},
 };
 
@@ -38,12 +39,34 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             if g.two_sided { ", nor back" } else { "" }
         ));
     }
+    if outcome.locked_vertices > 0 {
+        terminal.say(&format!(
+            "{} vertices were locked and stayed where they are",
+            outcome.locked_vertices
+        ));
+    }
     tell_stop(input, triangles_in, outcome, terminal);
+}
+
+/// Triangles that the scene draws before and after, each as often as its part is shown; `None` where every part is shown
+/// once.
+pub(super) fn triangles_drawn(mesh: &Mesh, outcome: &Outcome) -> Option<[usize; 2]> {
+    let drawn = [mesh, &outcome.mesh].map(|m| {
+        let triangles = 0..m.triangles().len();
+        triangles.map(|t| m.materials().instances(t)).sum::<usize>()
+    });
+    let stored = [mesh, &outcome.mesh].map(|m| m.triangles().len());
+    (drawn != stored).then_some(drawn)
 }
 
 fn tell_phase(phase: &Phase, terminal: &Terminal) {
     let c = &phase.counters;
-    let concession = phase.concession.map(|c| format!(", {} give way", c.name()));
+    let broken = match c.seams_broken {
+        0 => String::new(),
+        count => format!(" (seams broken: {count})"),
+    };
+    let concession = phase.concession;
+    let concession = concession.map(|c| format!(", {} give way{broken}", c.name()));
     terminal.say(&format!(
         "{}{}: {} -> {} triangles in {} collapses; {} evaluations (eager: {})",
         phase.method,

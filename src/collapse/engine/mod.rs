@@ -9,8 +9,8 @@ mod survey;
 use self::queue::Queue;
 pub use self::queue::{Heap, Key, Schedule};
 use super::{
-    Changes, Counters, EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Observer, Patch,
-    Plan, Proposal, Refusal, Review, Rules, Site, Stop,
+    Changes, Concession, Counters, EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Observer,
+    Patch, Plan, Proposal, Refusal, Review, Rules, Site, Stop,
 };
 use crate::{Error, Progress, Result, parallel};
 
@@ -190,6 +190,10 @@ impl Engine {
             }
         }
         self.inherited.sort_unstable_by_key(|(other, _)| *other);
+        if self.rules.concession >= Concession::Seams {
+            let site = Site::new(&self.live, &self.star, self.rules);
+            self.counters.seams_broken += u64::from(site.is_ok_and(|s| s.breaks_seam));
+        }
         self.live.apply(&self.patch, &mut self.changes);
         self.gathered = None;
         self.counters.collapses += 1;

@@ -9,7 +9,11 @@ mod incidence;
 use glam::DVec3;
 
 use self::incidence::IncidenceLists;
-use super::{PatchFace, pinch::Forest, wedge::WedgeRows};
+use super::{
+    PatchFace,
+    pinch::Forest,
+    wedge::{ChartScales, WedgeRows},
+};
 use crate::{
     mesh::{Materials, Mesh},
     num::{Each, Frame, Precision},
@@ -54,6 +58,7 @@ pub struct LiveMesh {
     frozen: Vec<bool>,
     pub(super) rows: WedgeRows,
     pub(super) wedges: Vec<[u32; 3]>,
+    pub(super) charts: ChartScales,
     pub(super) materials: Materials,
     may_have_features: bool,
 }
@@ -73,6 +78,7 @@ impl LiveMesh {
             materials: mesh.materials().clone(),
             ..Self::default()
         };
+        live.charts = ChartScales::of(mesh, &live.rows, &live.positions);
         let materials = &mesh.materials().of_triangle;
         live.may_have_features =
             live.rows.has_feature_channels() || materials.windows(2).any(|m| m[0] != m[1]);

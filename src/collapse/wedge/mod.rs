@@ -1,10 +1,18 @@
 //! Wedges: the values of corners, and the seams between faces that differ in them.
 
 mod blend;
+mod charts;
+mod coordinates;
+mod displaced;
+mod oriented_volume;
 mod transfer;
 
-pub(super) use self::blend::Blend;
-pub(super) use self::transfer::{WedgeScratch, transfer};
+pub(super) use self::{
+    blend::Blend,
+    charts::ChartScales,
+    displaced::displaced_area,
+    transfer::{WedgeScratch, transfer, turns_texture},
+};
 use super::{LiveMesh, StarFace};
 use crate::{
     mesh::{Attributes, Channel, ChannelKind},
@@ -153,9 +161,8 @@ pub(super) fn differ(
 /// Twice the signed area of a triangle in texture space; NaN where it has no texture coordinates.
 #[must_use]
 pub fn texture_area(rows: &WedgeRows, channel: Channel, wedges: [u32; 3]) -> f64 {
-    let [a, b, c] = wedges.each(|w| {
+    coordinates::double_area(wedges.each(|w| {
         let value = rows.value(channel, w);
         [value[0], value[1]]
-    });
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    }))
 }

@@ -2,15 +2,21 @@
 //!
 //! Algorithm (seams of Lindstrom & Turk 2000, section 3.3, by classes of corners), for each channel by itself so that
 //! a normal discontinuity does not tear texture coordinates: corners of the star at one end with equal values are one
-//! class; a face that holds both ends unites the classes of its two corners; every class gets one value. The value is
-//! interpolated along the edge at the foot of the new position, clamped to the edge; at an end it is exactly that
-//! end's. Normals are made unit again. A value that either end lacks is absent.
+//! class; a face that holds both ends unites the classes of its two corners; every class gets one value. Texture
+//! coordinates are solved over the faces of the class ([`coordinates`]), those of faces that the texture shows mirrored
+//! apart. Everything else is interpolated along the edge at the foot of the new position, clamped to the edge. At an end
+//! a value is exactly that end's. Normals are made unit again. A value that either end lacks is absent.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{Blend, WedgeRows, same_bits};
+use super::{
+    Blend, WedgeRows,
+    coordinates::{self, ChartFace},
+    oriented_volume::Otherwise,
+    same_bits, texture_area,
+};
 use crate::{
     collapse::{EdgeStar, LiveMesh, Patch, pinch::Forest},
     mesh::{Channel, ChannelKind},
@@ -36,6 +42,11 @@ pub(in crate::rooms::collapse) struct WedgeScratch {
     values: Vec<f64>,
     /// For every class, the first wedge of a corner at either end of the edge.
     firsts: Vec<[Option<u32>; 2]>,
+    /// For every class, whether it has a corner of a face that the texture shows as it is, and the first corner of one
+    /// that it shows mirrored.
+    sides: Vec<(bool, Option<usize>)>,
+    /// The faces of one class.
+    chart: Vec<ChartFace>,
     /// The new rows, by their values.
     order: Vec<u32>,
 }
@@ -58,46 +69,16 @@ pub(in crate::rooms::collapse) fn transfer(
         return;
     }
     let mut scratch = std::mem::take(&mut patch.scratch);
+    scratch.gather(live, star);
+    for &channel in &rows.channels {
+        scratch.fill(live, star, channel, position);
+    }
     let WedgeScratch {
         corners,
         values,
-        firsts,
         order,
+        ..
     } = &mut scratch;
-    corners.clear();
-    for (face, f) in star.faces.iter().enumerate() {
-        let wedges = live.wedges(f.id);
-        for end in 0..2 {
-            if f.at[end] < 3 {
-                corners.push(Corner {
-                    face,
-                    end,
-                    wedge: wedges[usize::from(f.at[end])],
-                    class: 0,
-                });
-            }
-        }
-    }
-    values.clear();
-    values.resize(corners.len() * rows.stride, 0.0);
-    let t = foot(star, position);
-    for &channel in &rows.channels {
-        classify(rows, channel, corners);
-        firsts.clear();
-        firsts.resize(corners.len(), [None; 2]);
-        for corner in corners.iter() {
-            firsts[corner.class][corner.end].get_or_insert(corner.wedge);
-        }
-        for (i, corner) in corners.iter().enumerate() {
-            let ends = firsts[corner.class].each(|first| first.map(|w| rows.value(channel, w)));
-            let into = &mut values[i * rows.stride + channel.offset..][..channel.kind.width()];
-            match ends {
-                [Some(a), Some(b)] => interpolate(channel.kind, live.precision(), a, b, t, into),
-                [Some(a), None] | [None, Some(a)] => into.copy_from_slice(a),
-                [None, None] => {}
-            }
-        }
-    }
     order.clear();
     let mut added = 0;
     for (i, corner) in corners.iter().enumerate() {
@@ -117,6 +98,178 @@ pub(in crate::rooms::collapse) fn transfer(
         patch.added[added].wedges[face.apex()] = id;
     }
     patch.scratch = scratch;
+}
+
+/// True where a face of the star that stays would be turned over in texture space with the new vertex at `position`.
+pub(in crate::rooms::collapse) fn turns_texture(
+    live: &LiveMesh,
+    star: &EdgeStar,
+    position: DVec3,
+) -> bool {
+    let rows = live.rows();
+    let is_texture = |c: &Channel| matches!(c.kind, ChannelKind::TexCoord(_));
+    if !rows.channels.iter().any(is_texture) {
+        return false;
+    }
+    let mut scratch = WedgeScratch::default();
+    scratch.gather(live, star);
+    rows.channels
+        .iter()
+        .copied()
+        .filter(is_texture)
+        .any(|channel| {
+            scratch.fill(live, star, channel, position);
+            let mut corners = scratch.corners.iter().enumerate();
+            corners.any(|(i, corner)| {
+                let face = &star.faces[corner.face];
+                if !face.survives {
+                    return false;
+                }
+                let wedges = live.wedges(face.id);
+                let mut after = wedges.each(|w| texture_point(rows, channel, w));
+                let at = i * rows.stride + channel.offset;
+                after[face.apex()] = [scratch.values[at], scratch.values[at + 1]];
+                let new = coordinates::double_area(after);
+                new * texture_area(rows, channel, wedges) < 0.0
+            })
+        })
+}
+
+fn texture_point(rows: &WedgeRows, channel: Channel, wedge: u32) -> [f64; 2] {
+    let value = rows.value(channel, wedge);
+    [value[0], value[1]]
+}
+
+/// # The steps of a transfer
+impl WedgeScratch {
+    /// Collects the corners of the star at either end of its edge.
+    fn gather(&mut self, live: &LiveMesh, star: &EdgeStar) {
+        self.corners.clear();
+        for (face, f) in star.faces.iter().enumerate() {
+            let wedges = live.wedges(f.id);
+            for end in 0..2 {
+                if f.at[end] < 3 {
+                    self.corners.push(Corner {
+                        face,
+                        end,
+                        wedge: wedges[usize::from(f.at[end])],
+                        class: 0,
+                    });
+                }
+            }
+        }
+        self.values.clear();
+        self.values
+            .resize(self.corners.len() * live.rows().stride, 0.0);
+    }
+
+    /// Fills in the values of one channel for every corner.
+    fn fill(&mut self, live: &LiveMesh, star: &EdgeStar, channel: Channel, position: DVec3) {
+        let rows = live.rows();
+        classify(rows, channel, &mut self.corners);
+        let is_texture = matches!(channel.kind, ChannelKind::TexCoord(_));
+        if is_texture {
+            self.part_mirrored(live, star, channel);
+        }
+        self.firsts.clear();
+        self.firsts.resize(self.corners.len(), [None; 2]);
+        for corner in &self.corners {
+            self.firsts[corner.class][corner.end].get_or_insert(corner.wedge);
+        }
+        let t = foot(star, position);
+        for i in 0..self.corners.len() {
+            let class = self.corners[i].class;
+            let start = |corner: usize| corner * rows.stride + channel.offset;
+            let width = channel.kind.width();
+            if class < i {
+                let known = start(class);
+                self.values.copy_within(known..known + width, start(i));
+                continue;
+            }
+            let ends = self.firsts[class].each(|first| first.map(|w| rows.value(channel, w)));
+            let solved = if is_texture {
+                self.coordinates(live, star, channel, (class, position, t))
+            } else {
+                None
+            };
+            let into = &mut self.values[start(i)..][..width];
+            match (solved, ends) {
+                (Some(solved), _) => into.copy_from_slice(&solved),
+                (None, [Some(a), Some(b)]) => {
+                    interpolate(channel.kind, live.precision(), a, b, t, into);
+                }
+                (None, [Some(a), None] | [None, Some(a)]) => into.copy_from_slice(a),
+                (None, [None, None]) => {}
+            }
+        }
+    }
+
+    /// Makes a class of its own of the corners whose faces the texture shows mirrored, where others of their class are
+    /// shown as they are.
+    fn part_mirrored(&mut self, live: &LiveMesh, star: &EdgeStar, channel: Channel) {
+        let area = |c: &Corner| {
+            let wedges = live.wedges(star.faces[c.face].id);
+            texture_area(live.rows(), channel, wedges)
+        };
+        self.sides.clear();
+        self.sides.resize(self.corners.len(), (false, None));
+        for (i, corner) in self.corners.iter().enumerate() {
+            let (upright, mirrored) = &mut self.sides[corner.class];
+            let area = area(corner);
+            *upright |= area > 0.0;
+            if area < 0.0 {
+                mirrored.get_or_insert(i);
+            }
+        }
+        for corner in &mut self.corners {
+            if let (true, Some(first)) = self.sides[corner.class]
+                && area(corner) < 0.0
+            {
+                corner.class = first;
+            }
+        }
+    }
+
+    /// Solves the texture coordinates of a class, where its value at an end of the edge is not the one to keep;
+    /// `None` where they are to be interpolated.
+    fn coordinates(
+        &mut self,
+        live: &LiveMesh,
+        star: &EdgeStar,
+        channel: Channel,
+        (class, position, at): (usize, DVec3, f64),
+    ) -> Option<[f64; 2]> {
+        let rows = live.rows();
+        let ends = self.firsts[class].each(|w| w.map(|w| texture_point(rows, channel, w)));
+        let kept = (0..2).find(|&end| position == star.points[end] && ends[end].is_some());
+        if let Some(end) = kept {
+            return ends[end];
+        }
+        self.chart.clear();
+        let mut scale = 1.0;
+        let mut last = None;
+        for corner in self.corners.iter().filter(|c| c.class == class) {
+            if last.replace(corner.face) == Some(corner.face) {
+                continue;
+            }
+            let face = &star.faces[corner.face];
+            if self.chart.is_empty() {
+                scale = live.charts.of_triangle(channel.kind, face.id);
+            }
+            self.chart.push(ChartFace {
+                points: face.points,
+                coordinates: live
+                    .wedges(face.id)
+                    .each(|w| texture_point(rows, channel, w)),
+            });
+        }
+        let known = |f: &ChartFace| f.coordinates.iter().all(|c| !c[0].is_nan());
+        if !self.chart.iter().all(known) {
+            return None;
+        }
+        let solved = coordinates::solve(&self.chart, position, scale, Otherwise { ends, at })?;
+        Some(solved.each(|x| live.precision().round(x)))
+    }
 }
 
 /// The number of a row among those of a patch, to which it is appended where it is new. `order` has the known ones by

@@ -10,6 +10,10 @@ use crate::{
     num::math,
 };
 
+/// The error that stands for a unit of area, squared, in the wrong chart: as if it had moved off the surface by three
+/// tenths of its width.
+const SEAM_PRICE: f64 = 0.09;
+
 /// The method: a quadric per vertex.
 #[derive(Clone, Debug)]
 pub struct QuadricMethod {
@@ -103,10 +107,11 @@ impl Method for QuadricMethod {
         let sum = self.quadric(u).plus(self.quadric(w));
         let wanted = site.fixed().unwrap_or_else(|| sum.place(site.star.points));
         let position = site.admit(wanted)?;
+        let lost = site.seam_loss(position);
         Ok(Proposal {
             position,
             primary: 0,
-            secondary: sum.error(position.position()),
+            secondary: sum.error(position.position()) + SEAM_PRICE * (lost * lost),
         })
     }
 

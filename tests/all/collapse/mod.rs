@@ -4,4 +4,5 @@ pub(crate) mod engine;
 mod high_valence;
 pub(crate) mod history;
 mod seams;
+mod texture_coordinates;
 mod tiles;
