@@ -6,6 +6,7 @@
 //! vertices by them: [`mod@image`], [`tolerance`] and [`view_bounded`] by the first, [`visibility`] by the second.
 
 pub mod billboards;
+mod concessions;
 pub mod image;
 pub mod memoryless;
 mod methods;
@@ -14,7 +15,6 @@ mod outcome;
 pub mod quadric;
 mod repair_folds;
 mod run;
-mod seams;
 mod target;
 pub mod tolerance;
 pub mod view_bounded;

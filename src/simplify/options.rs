@@ -57,6 +57,9 @@ pub struct Options {
     /// The first step that meant nothing to the method.
     #[serde(skip)]
     pub(crate) foreign: Option<&'static str>,
+    /// The rules that have to give way were settled for this mesh.
+    #[serde(skip)]
+    pub(crate) settled: bool,
 }
 
 /// # Constructors
@@ -76,6 +79,7 @@ impl Options {
             error_rms: None,
             measure_rank: 0,
             foreign: None,
+            settled: false,
         }
     }
 

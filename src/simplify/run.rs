@@ -10,7 +10,6 @@ use crate::{
     mesh::Mesh,
     parallel,
     view::frame_of,
-    visibility::{MeasureOptions, measure},
 };
 
 /// Simplifies a mesh; the result has no more triangles than wanted, or says why not.
@@ -68,7 +67,7 @@ fn in_pool(
         let report = options.method.as_run().report_of_copy(mesh);
         return run.outcome(Stop::TargetAboveInput, report);
     }
-    run.settle_seams()?;
+    run.settle_concessions()?;
     body(&options.method, run)
 }
 
@@ -81,6 +80,8 @@ pub(super) struct Run<'a> {
     pub(super) target: Option<usize>,
     /// Number of locked vertices.
     locked: usize,
+    /// Number of pieces that a view sees, where that was asked.
+    pub(super) seen_pieces: Option<usize>,
     pub(super) recorder: Recorder,
     pub(super) phases: Vec<Phase>,
     pub(super) progress: &'a dyn Progress,
@@ -110,6 +111,7 @@ impl<'a> Run<'a> {
             mesh,
             live,
             locked,
+            seen_pieces: None,
             options: options.clone(),
             target: options.target.of(mesh.triangles().len())?,
             recorder: Recorder::new(mesh, frame),
@@ -178,36 +180,22 @@ impl<'a> Run<'a> {
         start: PhaseStart,
     ) -> Result<Stop> {
         let mut stop = self.step(name, method, triangles, (self.options.rules, start))?;
-        let mut seen_pieces = 0;
         for rules in self.options.rules.steps().skip(1) {
             let stuck = matches!(&stop, Stop::NoLegalCollapse { refusals } if !refusals.by_bound());
             if !stuck || self.target != Some(triangles) {
                 break;
             }
             if rules.concession == Concession::UnseenPieces {
-                let seen = self.seen()?;
-                let [pieces, unseen] = self.live.expend_unseen(&seen);
-                seen_pieces = pieces - unseen;
+                self.expend_unseen()?;
             }
             let start = self.phase_start();
             stop = self.step(name, method, triangles, (rules, start))?;
         }
-        if matches!(stop, Stop::NoLegalCollapse { .. }) && seen_pieces > triangles {
-            stop = Stop::VisiblePieces {
-                pieces: seen_pieces,
-            };
+        let pieces = self.seen_pieces.unwrap_or(0);
+        if matches!(stop, Stop::NoLegalCollapse { .. }) && pieces > triangles {
+            stop = Stop::VisiblePieces { pieces };
         }
         Ok(stop)
-    }
-
-    /// By triangle id: whether any of the views around the mesh as it is now sees it (Zhang & Turk 2002).
-    fn seen(&self) -> Result<Vec<bool>> {
-        let mesh = self.live.to_mesh()?;
-        let visibility = measure(&mesh, &MeasureOptions::default(), self.progress)?;
-        let mut of_alive = visibility.triangles().iter().map(|&v| v > 0.0);
-        let ids = 0..self.live.triangle_ids();
-        let seen = ids.map(|t| self.live.triangle(t).is_some() && of_alive.next() == Some(true));
-        Ok(seen.collect())
     }
 
     /// Collapses under one method and the rules of one step.
@@ -254,8 +242,10 @@ impl<'a> Run<'a> {
     }
 
     fn outcome(self, stop: Stop, report: Report) -> Result<Outcome> {
-        let json =
-            serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
+        let mut options = self.options;
+        options.rules.concession = Concession::None;
+        options.settled = false;
+        let json = serde_json::to_string(&options).map_err(|e| Error::Internal(e.to_string()))?;
         let mesh = match stop {
             Stop::TargetAboveInput => self.mesh.clone(),
             _ => self.live.to_mesh()?,
@@ -266,7 +256,7 @@ impl<'a> Run<'a> {
             stop,
             locked_vertices: self.locked,
             phases: self.phases,
-            options: self.options,
+            options,
             report,
         })
     }

@@ -264,17 +264,22 @@ impl LiveMesh {
         self.expendable.get(vertex as usize).is_some_and(|&e| e)
     }
 
-    /// Lets the pieces vanish of which no triangle is in `seen`, by triangle id, and returns the number of all pieces and
-    /// of those. A piece is what shares vertices. O(n).
-    pub fn expend_unseen(&mut self, seen: &[bool]) -> [usize; 2] {
-        let mut forest = Forest::of(self.positions.len());
-        let alive = |t: &usize| self.faces[*t][0] != NONE;
-        for [a, b, c] in self.faces.iter().copied().filter(|f| f[0] != NONE) {
-            forest.unite(a as usize, b as usize);
-            forest.unite(a as usize, c as usize);
+    /// Number of pieces: triangles that share vertices. O(n).
+    pub fn pieces(&self) -> usize {
+        let mut forest = self.forest();
+        let mut roots = vec![false; self.positions.len()];
+        for corners in self.faces.iter().filter(|f| f[0] != NONE) {
+            roots[forest.root(corners[0] as usize)] = true;
         }
+        roots.into_iter().filter(|&root| root).count()
+    }
+
+    /// Lets the pieces vanish of which no triangle is in `seen`, by triangle id, and returns the number of all pieces and
+    /// of those. O(n).
+    pub fn expend_unseen(&mut self, seen: &[bool]) -> [usize; 2] {
+        let mut forest = self.forest();
         let mut pieces = vec![None; self.positions.len()];
-        for t in (0..self.faces.len()).filter(alive) {
+        for t in (0..self.faces.len()).filter(|&t| self.faces[t][0] != NONE) {
             let root = forest.root(self.faces[t][0] as usize);
             *pieces[root].get_or_insert(false) |= seen[t];
         }
@@ -284,6 +289,25 @@ impl LiveMesh {
             .collect();
         let all = pieces.iter().flatten();
         [all.clone().count(), all.filter(|&&seen| !seen).count()]
+    }
+
+    /// Lets the same pieces vanish from `other`, made of the same vertices.
+    #[must_use]
+    pub fn lend_expendable(&self, other: Self) -> Self {
+        Self {
+            expendable: self.expendable.clone(),
+            ..other
+        }
+    }
+
+    /// The vertices by their pieces.
+    fn forest(&self) -> Forest {
+        let mut forest = Forest::of(self.positions.len());
+        for [a, b, c] in self.faces.iter().copied().filter(|f| f[0] != NONE) {
+            forest.unite(a as usize, b as usize);
+            forest.unite(a as usize, c as usize);
+        }
+        forest
     }
 
     /// The triangles at a vertex, in no particular order.

@@ -14,7 +14,7 @@ use super::{
     super::{Options, Outcome, Report, Target, run::simplify_in_pool},
     HeldOutViews, ImageOptions, ImageReport,
 };
-use crate::{Progress, Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
+use crate::{Progress, Result, mesh::Mesh, metric::luma::SquaredError};
 
 /// Images pay where they leave less than this share of the RMS: views differ by about as much (0.974 in these views was
 /// 1.014 in those of `lodmark compare` for Gouraud pictures of a torus of 4,608 triangles). Where no picture can tell the
@@ -50,6 +50,8 @@ pub(super) struct Contest<'a> {
     pub(super) held_out: HeldOutViews,
     /// The input, in file units.
     pub(super) mesh: &'a Mesh,
+    /// The options of the run, with what gave way from its start.
+    pub(super) options: Options,
     /// The mesh that images started from, in file units.
     pub(super) start: Mesh,
 }
@@ -69,7 +71,7 @@ impl Contest<'_> {
             return Ok(images);
         }
         let ours = self.held_out.error(&images.mesh)?;
-        let options = self.memoryless(images.options.rules, triangles);
+        let options = self.memoryless(triangles);
         let quick = simplify_in_pool(&self.start, &options, progress)?;
         let others = self.held_out.error(&quick.mesh)?;
         if below(ours, others, PLAIN) && others.rms() >= PLAINLY_RESOLVED {
@@ -105,10 +107,16 @@ impl Contest<'_> {
         Ok(images)
     }
 
-    /// The memoryless method as its own defaults have it, within the topology of `rules`.
-    fn memoryless(&self, rules: Rules, triangles: usize) -> Options {
+    /// The memoryless method as its own defaults have it, with the topology and the concessions of the run.
+    fn memoryless(&self, triangles: usize) -> Options {
         let target = Target::triangles(triangles as u64);
-        Options::new(self.own.placement, target).topology(rules.topology)
+        let mut options =
+            Options::new(self.own.placement, target).topology(self.options.rules.topology);
+        options.rules.concession = self.options.rules.concession;
+        options.rules.drop_pieces = self.options.rules.drop_pieces;
+        options.locks = self.options.locks;
+        options.settled = true;
+        options
     }
 }
 

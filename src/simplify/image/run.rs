@@ -62,6 +62,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     let too_far = limit.is_some_and(|rms| method.pictures().rms() > 0.5 * rms);
     if too_far && !run.phases.is_empty() {
         run = Run::new(mesh, &run.options, progress)?;
+        run.settle_concessions()?;
         method = drive(&run.live);
         resolved = Start::Input;
     }
@@ -76,6 +77,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
             own,
             held_out,
             mesh,
+            options: run.options.clone(),
             start: run.live.to_mesh()?,
         })
     };
