@@ -19,7 +19,7 @@ use crate::{
 
 /// Share of its target down to which a method that orders by more than geometry has to have a way: it leaves others than
 /// the rehearsal does.
-const MARGIN: f64 = 0.85;
+const MARGIN: f64 = 0.4;
 
 /// Pieces of a mesh without seams, as a share of the target, from which they can stop a run above it.
 const PIECES: f64 = 0.25;
