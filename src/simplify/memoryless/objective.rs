@@ -35,8 +35,8 @@ pub fn propose(site: &Site<'_>, options: &MemorylessOptions) -> Result<Proposal,
 }
 
 /// The squared volume that stands for a unit of area, cubed, in the wrong chart: as if it had moved off the surface by
-/// three tenths of its width (the volume of a tetrahedron is a third of area times height).
-const SEAM_PRICE: f64 = 0.01;
+/// its own width (the volume of a tetrahedron is a third of area times height).
+const SEAM_PRICE: f64 = 1.0 / 9.0;
 
 /// The cheapest admitted position of midpoint and ends, the earlier on a tie.
 fn best_of_three(site: &Site<'_>, objective: &Objective) -> Result<Admitted, Refusal> {

@@ -10,9 +10,9 @@ use crate::{
     num::math,
 };
 
-/// The error that stands for a unit of area, squared, in the wrong chart: as if it had moved off the surface by three
-/// tenths of its width.
-const SEAM_PRICE: f64 = 0.09;
+/// The error that stands for a unit of area, squared, in the wrong chart: as if it had moved off the surface by its own
+/// width.
+const SEAM_PRICE: f64 = 1.0;
 
 /// The method: a quadric per vertex.
 #[derive(Clone, Debug)]
