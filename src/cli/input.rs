@@ -12,15 +12,25 @@ use crate::{
 
 /// Reads a mesh; `weld` unites vertices whose positions are equal bits. Triangles keep their order and number.
 pub(super) fn read(path: &Path, weld: bool, terminal: &Terminal) -> Result<Mesh> {
+    read_with_notes(path, weld, terminal).map(|(mesh, _)| mesh)
+}
+
+/// As [`read`], with one sentence for everything that the reader could not keep.
+pub(super) fn read_with_notes(
+    path: &Path,
+    weld: bool,
+    terminal: &Terminal,
+) -> Result<(Mesh, Vec<String>)> {
     let loaded = io::read(path)?;
     for note in &loaded.notes {
         terminal.say(&format!("{}: {note}", path.display()));
     }
-    Ok(if weld {
+    let mesh = if weld {
         welded(path, loaded.mesh, terminal)
     } else {
         loaded.mesh
-    })
+    };
+    Ok((mesh, loaded.notes))
 }
 
 /// A mesh as read from `path`, with vertices whose positions are equal bits united.

@@ -62,6 +62,8 @@ pub enum Concession {
     UnseenPieces,
     /// Holes may close and parts may merge; every piece that is seen keeps a triangle.
     Topology,
+    /// A face may turn over in the texture.
+    Texture,
 }
 
 impl Concession {
@@ -73,6 +75,7 @@ impl Concession {
             Self::Seams => "seams",
             Self::UnseenPieces => "unseen pieces",
             Self::Topology => "topology",
+            Self::Texture => "sides of the texture",
         }
     }
 }
@@ -80,13 +83,14 @@ impl Concession {
 impl Rules {
     /// The rules that a run goes through one after the other while its target is not met.
     pub fn steps(self) -> impl Iterator<Item = Self> {
-        use Concession::{None, Seams, Topology as Holes, UnseenPieces};
+        use Concession::{None, Seams, Texture, Topology as Holes, UnseenPieces};
         let count = if self.topology == Topology::Auto {
-            4
+            5
         } else {
             1
         };
-        let steps = [None, Seams, UnseenPieces, Holes].into_iter().take(count);
+        let steps = [None, Seams, UnseenPieces, Holes, Texture];
+        let steps = steps.into_iter().take(count);
         let steps = steps.filter(move |&step| step >= self.concession);
         steps.map(move |concession| Self { concession, ..self })
     }
@@ -94,7 +98,7 @@ impl Rules {
     /// True where the topology around an edge need not be preserved.
     fn is_topology_free(self, live: &LiveMesh, ends: [u32; 2]) -> bool {
         self.topology == Topology::Free
-            || self.concession == Concession::Topology
+            || self.concession >= Concession::Topology
             || self.concession == Concession::UnseenPieces && is_expendable(live, ends)
     }
 
@@ -207,7 +211,7 @@ impl<'a> Site<'a> {
         }
         shape(self.star, position, self.rules)?;
         check_collapse_folds(self.live, self.star, position, self.rules)?;
-        let may_turn = self.rules.concession == Concession::Topology;
+        let may_turn = self.rules.concession == Concession::Texture;
         if !may_turn && wedge::turns_texture(self.live, self.star, position) {
             return Err(Refusal::Mirror);
         }

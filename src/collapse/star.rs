@@ -17,7 +17,10 @@ use super::{
     pinch,
     wedge::{self, Blend},
 };
-use crate::num::{Each, math};
+use crate::{
+    mesh::ChannelKind,
+    num::{Each, math},
+};
 
 /// Directions in which a vertex may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,7 +111,7 @@ impl Star {
     ///
     /// # Errors
     /// The rule that forbids it: [`Refusal::Locked`], [`Refusal::Unplaced`], [`Refusal::Degenerate`] or
-    /// [`Refusal::Flip`].
+    /// [`Refusal::Flip`], and [`Refusal::Mirror`] where one would turn over in the texture.
     pub fn admit(&self, live: &LiveMesh, to: DVec3, rules: Rules) -> Result<DVec3, Refusal> {
         if self.freedom == Freedom::Fixed {
             return Err(Refusal::Locked);
@@ -125,7 +128,53 @@ impl Star {
             });
             legality::turn(before, normal(before), after, rules)?;
         }
+        if self.turns_texture(live, to) {
+            return Err(Refusal::Mirror);
+        }
         Ok(to)
+    }
+
+    /// True where a face would turn over in the texture with the vertex at `to`; see [`Star::carry`].
+    fn turns_texture(&self, live: &LiveMesh, to: DVec3) -> bool {
+        let rows = live.rows();
+        let textures = rows.channels().iter().copied();
+        let mut textures = textures
+            .filter(|c| matches!(c.kind, ChannelKind::TexCoord(_)))
+            .peekable();
+        if textures.peek().is_none() {
+            return false;
+        }
+        let Some((foot, weights)) = self.foot(live, to) else {
+            return false;
+        };
+        let apexes = || {
+            self.faces
+                .iter()
+                .filter_map(|f| Some((f, f.corner(self.vertex)?)))
+        };
+        textures.any(|channel| {
+            let mut wedges = apexes().map(|(f, at)| f.wedges[at]);
+            let Some(first) = wedges.next() else {
+                return false;
+            };
+            if !wedges.all(|w| rows.same(channel, w, first)) {
+                return false;
+            }
+            let corners = |face: &PatchFace| {
+                face.wedges.each(|w| {
+                    let value = rows.value(channel, w);
+                    [value[0], value[1]]
+                })
+            };
+            let [a, b, c] = corners(&foot);
+            let mix = |k: usize| (weights[0] * a[k] + weights[1] * b[k]) + weights[2] * c[k];
+            apexes().any(|(face, at)| {
+                let before = corners(face);
+                let mut after = before;
+                after[at] = [mix(0), mix(1)];
+                wedge::double_area(before) * wedge::double_area(after) < 0.0
+            })
+        })
     }
 
     /// Fills `patch` with the move to `to`, which was admitted.

@@ -32,8 +32,8 @@ impl Run<'_> {
         let rules = self.options.rules;
         if self.options.settled {
             return match rules.concession {
-                Concession::UnseenPieces | Concession::Topology => self.expend_unseen(),
                 Concession::None | Concession::Seams => Ok(()),
+                _ => self.expend_unseen(),
             };
         }
         self.options.settled = true;

@@ -139,6 +139,9 @@ struct Summary<'a> {
     /// Of images and geometry, where they were close.
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
+    /// One sentence for everything that reading or writing could not keep.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
     content_sha256: String,
 }
 
@@ -200,7 +203,7 @@ pub(super) fn run(
         common.json.as_ref(),
     ];
     input::require_outputs(outputs.into_iter().flatten())?;
-    let mesh = input::read(&options.input, !options.no_weld, terminal)?;
+    let (mesh, mut notes) = input::read_with_notes(&options.input, !options.no_weld, terminal)?;
     input::require_triangles(&options.input, &mesh)?;
     let triangles_in = mesh.triangles().len();
     let mesh = input::canonical(&options.input, mesh, terminal);
@@ -220,6 +223,7 @@ pub(super) fn run(
     }
     for note in io::write(&options.output, &outcome.mesh)? {
         terminal.say(&format!("{}: {note}", options.output.display()));
+        notes.push(note);
     }
     if let Some(path) = &options.history {
         let bytes = outcome.history.to_bytes();
@@ -242,6 +246,7 @@ pub(super) fn run(
         triangles_drawn: run_log::triangles_drawn(&mesh, &outcome),
         polish: outcome.polish(),
         comparison: outcome.comparison(),
+        notes,
         content_sha256: content_sha256(&outcome.mesh),
     };
     report(common, "simplify", &outcome.options, &summary)?;

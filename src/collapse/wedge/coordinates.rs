@@ -73,7 +73,7 @@ fn nearest(faces: &[ChartFace], p: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// Twice the signed area of a triangle in texture space.
-pub(super) fn double_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
+pub(in crate::rooms::collapse) fn double_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     cross(a, b, c)
 }
 

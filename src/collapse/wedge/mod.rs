@@ -10,6 +10,7 @@ mod transfer;
 pub(super) use self::{
     blend::Blend,
     charts::ChartScales,
+    coordinates::double_area,
     displaced::displaced_area,
     transfer::{WedgeScratch, transfer, turns_texture},
 };
