@@ -41,7 +41,7 @@ pub struct Rules {
     /// any fold. Where an edge is sharper already, it may stay so.
     #[serde(default = "no_fold")]
     pub fold_cosine: f64,
-    /// Let pieces that are seen vanish with the topology; else [`Topology::Auto`] leaves a triangle of each.
+    /// Let pieces that are seen and materials vanish with the topology; else [`Topology::Auto`] leaves a triangle of each.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub drop_pieces: bool,
     /// The last of the concessions so far; none but in a run under [`Topology::Auto`].
@@ -244,6 +244,11 @@ fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, boo
     let free = rules.is_topology_free(live, star.ends);
     if !free {
         topology(star)?;
+    }
+    let gone = star.faces.iter().filter(|f| !f.survives).map(|f| f.id);
+    let keeps_materials = rules.topology != Topology::Free && !rules.drop_pieces;
+    if keeps_materials && live.takes_last_of_material(gone) {
+        return Err(Refusal::LastTriangle);
     }
     let (feature, breaks_seam) = features(star, rules, free)?;
     let locked = star.ends.each(|v| live.is_locked(v));

@@ -44,7 +44,7 @@ macro_rules! refusals {
 refusals! {
     /// More than [`STAR_LIMIT`](super::legality::STAR_LIMIT) faces touch the edge, or than the method's plan allows.
     Valence => "valence",
-    /// Nothing would be left of the mesh.
+    /// Nothing would be left of the mesh, or of a material.
     LastTriangle => "last-triangle",
     /// A common neighbour of both ends forms no face with them: a hole or handle would close.
     Link => "link",

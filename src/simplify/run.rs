@@ -191,7 +191,12 @@ impl<'a> Run<'a> {
             let start = self.phase_start();
             stop = self.step(name, method, triangles, (rules, start))?;
         }
-        let pieces = self.seen_pieces.unwrap_or(0);
+        let kept = if self.options.rules.drop_pieces {
+            0
+        } else {
+            self.live.used_materials()
+        };
+        let pieces = self.seen_pieces.unwrap_or(0).max(kept);
         if matches!(stop, Stop::NoLegalCollapse { .. }) && pieces > triangles {
             stop = Stop::VisiblePieces { pieces };
         }

@@ -60,6 +60,8 @@ pub struct LiveMesh {
     pub(super) wedges: Vec<[u32; 3]>,
     pub(super) charts: ChartScales,
     pub(super) materials: Materials,
+    /// Number of triangles that are left of every material.
+    of_material: Vec<u32>,
     may_have_features: bool,
 }
 
@@ -118,6 +120,7 @@ impl LiveMesh {
                 }
             }
         }
+        self.of_material = vec![0; self.materials.names.len()];
         self.faces = vec![[NONE; 3]; faces.len()];
         self.live = 0;
         self.faces_at = IncidenceLists::with_room(&valences);
@@ -219,6 +222,24 @@ impl LiveMesh {
     /// The material of a triangle, as [`Materials::of`].
     pub fn material(&self, id: u32) -> u32 {
         self.materials.of(id as usize)
+    }
+
+    /// True where nothing would be left of a material without these triangles.
+    pub(super) fn takes_last_of_material(&self, gone: impl Iterator<Item = u32> + Clone) -> bool {
+        if self.of_material.is_empty() {
+            return false;
+        }
+        let mut each = gone.clone().map(|id| self.material(id));
+        each.any(|material| {
+            let left = self.of_material.get(material as usize);
+            let same = || gone.clone().filter(|&id| self.material(id) == material);
+            left.is_some_and(|&left| same().count() >= left as usize)
+        })
+    }
+
+    /// Number of materials that have a triangle.
+    pub fn used_materials(&self) -> usize {
+        self.of_material.iter().filter(|&&count| count > 0).count()
     }
 
     /// The values of all wedges.
@@ -397,6 +418,12 @@ impl LiveMesh {
             self.faces_at.push(v, id);
         }
         self.live += 1;
+        if let Some(count) = self
+            .of_material
+            .get_mut(self.materials.of(id as usize) as usize)
+        {
+            *count += 1;
+        }
     }
 
     /// Gives a face other corners.
@@ -414,6 +441,12 @@ impl LiveMesh {
         }
         self.faces[id as usize] = [NONE; 3];
         self.live -= 1;
+        if let Some(count) = self
+            .of_material
+            .get_mut(self.materials.of(id as usize) as usize)
+        {
+            *count -= 1;
+        }
     }
 
     pub(super) fn add_side(&mut self, a: u32, b: u32, created: &mut Vec<u32>) {

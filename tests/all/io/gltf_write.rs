@@ -12,18 +12,22 @@ use serde_json::{Value, json};
 use super::gltf_documents::{Builder, F32, U8, U16, accessor, asset, glb, section, text_of};
 use crate::support::folder;
 
-fn read(bytes: &[u8]) -> Mesh {
+pub(super) fn read(bytes: &[u8]) -> Mesh {
     io::read_bytes(Format::Glb, bytes, "-")
         .expect("a good file")
         .mesh
 }
 
-fn write(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
+pub(super) fn write(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
     io::encode(mesh, Encoding::Glb).expect("it can be written")
 }
 
 /// The mesh without some of its triangles, and with some of its vertices moved.
-fn edited(mesh: &Mesh, keeps: impl Fn(usize) -> bool, moves: impl Fn(DVec3) -> DVec3) -> Mesh {
+pub(super) fn edited(
+    mesh: &Mesh,
+    keeps: impl Fn(usize) -> bool,
+    moves: impl Fn(DVec3) -> DVec3,
+) -> Mesh {
     let mut parts = mesh.clone().into_parts();
     let kept: Vec<usize> = (0..parts.triangles.len()).filter(|&t| keeps(t)).collect();
     let kinds: Vec<ChannelKind> = parts.attributes.channels().iter().map(|c| c.kind).collect();
@@ -50,7 +54,7 @@ fn without_first(mesh: &Mesh) -> Mesh {
 }
 
 /// What a reader makes of it: the order is not part of it, directions are those of 32-bit floats.
-fn same(a: &Mesh, b: &Mesh) {
+pub(super) fn same(a: &Mesh, b: &Mesh) {
     let plain = |mesh: &Mesh| canonical(&weld(mesh.clone()).mesh).mesh;
     let (a, b) = (plain(a), plain(b));
     assert_eq!(a.positions(), b.positions());

@@ -190,6 +190,26 @@ pub(crate) fn gltf_errors(validator: &Path, files: &[PathBuf]) -> Vec<Vec<String
     found
 }
 
+/// Triangles of each file and its distance from the original, in levels, as trimesh reads and Embree draws them.
+pub(crate) fn foreign_pictures(
+    packages: &Path,
+    original: &Path,
+    files: &[PathBuf],
+) -> Vec<(usize, f64)> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracles/pictures.py");
+    let mut command = python(packages);
+    let said = run(command.arg(script).arg("rms").arg(original).args(files));
+    let said = said.expect("the pictures are drawn");
+    let line = |line: &str| {
+        let (triangles, rms) = line.split_once(' ').expect("two numbers");
+        (
+            triangles.parse().expect("a count"),
+            rms.parse().expect("a number"),
+        )
+    };
+    said.lines().map(line).collect()
+}
+
 /// Runs a command of the script on an exchange folder.
 pub(crate) fn oracle(packages: &Path, words: &[&str], exchange: &Path) {
     let mut command = python(packages);
