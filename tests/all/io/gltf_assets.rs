@@ -1,20 +1,20 @@
 //! Real glTF files, from the folder that `LODMARK_ASSETS` names, else `../shared/assets`: a quarter of their triangles.
 
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 
 use lodmark::{
     Options, Target, io,
-    mesh::{Mesh, canonical, content_digest, weld},
+    mesh::{ChannelKind, Mesh, canonical, content_digest, weld},
     simplify,
 };
 use serde_json::Value;
 
 use super::gltf_documents::{asset, section, text_of};
 use crate::support::{
-    folder,
+    asset_file, folder,
     oracle::{gltf_errors, gltf_validator},
     say,
 };
@@ -147,5 +147,48 @@ fn simplified_files_are_valid_and_have_lost_no_material() {
             .filter(|e| !errors[0].contains(e))
             .collect();
         assert!(new.is_empty(), "{}: {new:?}", files[1].display());
+    }
+}
+
+/// By place, the skin and the morph deltas of every corner there.
+fn deformations(mesh: &Mesh) -> Vec<BTreeSet<Vec<u64>>> {
+    let attributes = mesh.attributes();
+    let bound = |kind: ChannelKind| matches!(kind, ChannelKind::Skin(_) | ChannelKind::Delta(_));
+    let channels: Vec<_> = attributes
+        .channels()
+        .iter()
+        .filter(|c| bound(c.kind))
+        .collect();
+    let mut at: BTreeMap<[u64; 3], BTreeSet<Vec<u64>>> = BTreeMap::new();
+    for (corners, wedges) in mesh.triangles().iter().zip(attributes.corners()) {
+        for (&v, &w) in corners.iter().zip(wedges) {
+            let place = mesh.positions()[v as usize].to_array().map(f64::to_bits);
+            let values = channels.iter().flat_map(|&&c| attributes.value(c, w));
+            let values = values.map(|x| x.to_bits()).collect();
+            at.entry(place).or_default().insert(values);
+        }
+    }
+    at.into_values().collect()
+}
+
+#[test]
+fn what_hangs_together_at_rest_hangs_together_in_every_pose() {
+    let folder = folder();
+    for name in ["CesiumMan.glb", "MorphStressTest.glb"] {
+        let Some(path) = asset_file(name) else {
+            continue;
+        };
+        let mesh = canonical(&weld(io::read(&path).expect("a good file").mesh).mesh).mesh;
+        let several = |mesh: &Mesh| deformations(mesh).iter().filter(|d| d.len() > 1).count();
+        let before = several(&mesh);
+        for share in [0.5, 0.1, 0.02] {
+            let options = Options::memoryless(Target::ratio(share));
+            let less = simplify(&mesh, &options).expect("it runs").mesh;
+            let out = folder.path().join("out.glb");
+            io::write(&out, &less).expect("written");
+            let again = io::read(&out).expect("read").mesh;
+            // Vertices at one place that move alike stay at one place: no animation opens an edge between them.
+            assert!(several(&again) <= before, "{name} at {share}");
+        }
     }
 }
