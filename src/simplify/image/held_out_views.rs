@@ -32,7 +32,7 @@ pub struct HeldOutViews {
 }
 
 impl HeldOutViews {
-    /// Draws `original`, the scene of `mesh`; both are in units of `frame`. The size of `own` must have been resolved.
+    /// Draws `original`, the scene of `mesh`; both are in units of `frame`. `own` must have been resolved.
     ///
     /// # Errors
     /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
