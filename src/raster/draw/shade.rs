@@ -96,8 +96,9 @@ impl Shader {
     }
 
     /// The intensities at the corners of a triangle with the unit normals that a mesh stores for them; a corner whose
-    /// normal is zero, and every one where the mesh stores none, has the triangle's own. The light comes from its
-    /// direction at the corner: as flat shading has it at the centroid only where it comes from afar.
+    /// normal is zero, and every one where the mesh stores none, has the triangle's own. The direction to the light is
+    /// that from each corner: a triangle with its own normals alone looks flat where the light is far away, and nearly so
+    /// elsewhere.
     #[inline]
     pub fn lit(&self, corners: [DVec3; 3], normals: Option<&[DVec3; 3]>) -> [f64; 3] {
         let stored = normals.copied().unwrap_or_default();

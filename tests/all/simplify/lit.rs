@@ -132,3 +132,25 @@ fn no_number_of_threads_and_no_engine_changes_a_lit_result() {
     assert_eq!(layers, run(&options[1]));
     assert!(layers.1.is_some_and(|rms| rms > 0.0));
 }
+
+#[test]
+fn the_report_of_the_command_says_which_shading_drove() {
+    let dir = support::folder();
+    support::put(&dir, "lit.obj", &mesh());
+    support::put(&dir, "plain.obj", &generate::torus(1.0, 0.4, 16, 10));
+    for (words, shading) in [
+        ("lit.obj", "lit"),
+        ("lit.obj --shading auto", "lit"),
+        ("lit.obj --shading flat", "flat"),
+        ("lit.obj --preset paper", "flat"),
+        ("plain.obj", "flat"),
+        ("plain.obj --shading lit", "lit"),
+    ] {
+        let (input, rest) = words.split_once(' ').unwrap_or((words, ""));
+        let line =
+            format!("simplify {input} out.obj --triangles 200 --size 24 --json r.json {rest}");
+        support::expect(&dir, 0, line.trim_end());
+        let method = &support::json(&dir, "r.json")["options"]["method"];
+        assert_eq!(method["shading"], shading, "{words}");
+    }
+}
