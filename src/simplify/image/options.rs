@@ -113,7 +113,7 @@ pub enum DrivingShading {
 }
 
 impl DrivingShading {
-    /// The shading for a mesh: of what `Auto` stands for where that `stores_normals`.
+    /// The shading for a mesh: that which `Auto` stands for, by whether the mesh `stores_normals`.
     #[must_use]
     pub const fn resolved(self, stores_normals: bool) -> Self {
         match self {
