@@ -10,9 +10,9 @@ use lodmark::{
 use crate::support::{meshes::with_normals, scene_of};
 
 const DIRECTIONS: [DVec3; 3] = [
-    DVec3::new(0.3, 0.2, 1.0),
-    DVec3::new(-0.7, 0.4, -0.2),
-    DVec3::new(0.1, -0.9, 0.35),
+    DVec3::new(0.8, 0.5, 1.0),
+    DVec3::new(-0.7, 0.4, -0.5),
+    DVec3::new(0.4, -0.9, 0.6),
 ];
 
 fn views(mesh: &Mesh, projection: Projection, interpolation: Interpolation) -> ViewSet {
