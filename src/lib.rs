@@ -101,13 +101,13 @@
 //! 8. The engine re-keys the edges around the new vertex.
 //!
 //! One collapse has three shapes: a `Patch` of the live mesh, the `SceneEdit` that pictures are asked about, and the
-//! `Record` of the history. A memoryless one has no second, and passes 12 files; an image-driven one passes 19:
+//! `Record` of the history. A memoryless one has no second, and passes 12 files; an image-driven one passes 20:
 //!
 //! | room | files of the way |
 //! |---|---|
 //! | `collapse` | `engine/mod`, `engine/queue`, `edge_star`, `live/mod`, `live/incidence`, `legality`, `fold`, `patch`, `history` |
 //! | `simplify/memoryless` | `objective`; not for images: `method`, `vertex_sums` |
-//! | `simplify/image` | `method`, `pictures` |
+//! | `simplify/image` | `method`, `pictures`, `slots` |
 //! | `raster/unrender` | `scene_edit`, `layers/mod`, `layers/projected`, `layers/view`, `layers/probe`, `layers/view_delta`, `layers/fragment_lists` |
 //!
 //! Attributes add the two of `collapse/wedge`. Not counted are files that only declare a seam (`collapse/method`,

@@ -41,7 +41,7 @@ pub(super) struct RenderArgs {
     /// Buffers to write
     #[arg(long, value_enum, value_delimiter = ',', default_value = "luma")]
     buffer: Vec<Buffer>,
-    /// Flat or Gouraud [default: flat]
+    /// Flat, Gouraud, or lit: with the normals that the mesh stores [default: flat]
     #[arg(long, value_enum)]
     shading: Option<Interpolation>,
     /// The side of triangles that is left out [default: none]

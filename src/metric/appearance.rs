@@ -1,4 +1,5 @@
-//! The likeness of a candidate and a reference: squared luma error over a set of views, flat and Gouraud.
+//! The likeness of a candidate and a reference: squared luma error over a set of views, flat, Gouraud, and lit
+//! where both store normals.
 //!
 //! Lindstrom & Turk 2000, sections 3.2 and 5: results are judged in views that did not drive the simplification (24 of
 //! 512 x 512 pixels, [`ViewSet::evaluation`]), and the views together are one mosaic (equation 2). Deviation: pixels
@@ -30,6 +31,8 @@ pub struct Appearance {
     pub flat: ViewErrors,
     /// With intensities interpolated between vertices.
     pub gouraud: ViewErrors,
+    /// With the normals that the meshes store; `None` where one of them stores none.
+    pub lit: Option<ViewErrors>,
 }
 
 /// The picture that differs most.
@@ -44,26 +47,34 @@ pub struct WorstView {
 }
 
 impl Appearance {
-    /// The view and shading with the largest mean squared difference; flat before Gouraud, then the first of equals.
+    /// The view and shading with the largest mean squared difference; flat before Gouraud before lit, then the first of
+    /// equals.
     pub fn worst(&self) -> WorstView {
-        let (flat, gouraud) = (self.flat.worst(), self.gouraud.worst());
-        let ((view, error), shading) = if gouraud.1.mean_square() > flat.1.mean_square() {
-            (gouraud, Interpolation::Gouraud)
-        } else {
-            (flat, Interpolation::Flat)
+        let of = |errors: &ViewErrors, shading| {
+            let (view, error) = errors.worst();
+            WorstView {
+                view,
+                shading,
+                error,
+            }
         };
-        WorstView {
-            view,
-            shading,
-            error,
+        let flat = of(&self.flat, Interpolation::Flat);
+        let gouraud = of(&self.gouraud, Interpolation::Gouraud);
+        let lit = self.lit.as_ref().map(|lit| of(lit, Interpolation::Lit));
+        let mut worst = flat;
+        for other in std::iter::once(gouraud).chain(lit) {
+            if other.error.mean_square() > worst.error.mean_square() {
+                worst = other;
+            }
         }
+        worst
     }
 }
 
-/// Draws the reference and all candidates in every view, flat and Gouraud, and compares: one [`Appearance`] for each
-/// candidate, in order.
+/// Draws the reference and all candidates in every view, flat, Gouraud, and lit where both store normals, and compares:
+/// one [`Appearance`] for each candidate, in order.
 ///
-/// The same bits for every number of threads. Cost: two pictures of each scene per view.
+/// The same bits for every number of threads. Cost: two or three pictures of each scene per view.
 ///
 /// # Errors
 /// [`Error::Unsupported`] where a vertex of a scene has no finite place in the frame; [`Error::Usage`] for a set
@@ -74,13 +85,20 @@ pub fn appearance(
     views: &ViewSet,
     progress: &dyn Progress,
 ) -> Result<Vec<Appearance>> {
-    let shadings = [Interpolation::Flat, Interpolation::Gouraud];
-    let found = errors(reference, candidates, views, shadings, progress)?;
-    let both = |errors: Vec<ViewErrors>| match <[ViewErrors; 2]>::try_from(errors) {
-        Ok([flat, gouraud]) => Ok(Appearance { flat, gouraud }),
-        Err(_) => Err(Error::Internal("two shadings, two errors".into())),
+    let stores = |scene: &Scene| !scene.stored_normals().is_empty();
+    let mut shadings = vec![Interpolation::Flat, Interpolation::Gouraud];
+    if stores(reference) && candidates.iter().any(stores) {
+        shadings.push(Interpolation::Lit);
+    }
+    let found = errors(reference, candidates, views, &shadings, progress)?;
+    let look = |errors: Vec<ViewErrors>| {
+        let mut errors = errors.into_iter();
+        match (errors.next(), errors.next(), errors.next()) {
+            (Some(flat), Some(gouraud), lit) => Ok(Appearance { flat, gouraud, lit }),
+            _ => Err(Error::Internal("two shadings, two errors".into())),
+        }
     };
-    found.into_iter().map(both).collect()
+    found.into_iter().map(look).collect()
 }
 
 /// As [`appearance`], flat only. In the 20 views of [`image_error_views`] the total is the error of Zhang & Turk 2002,
@@ -95,7 +113,7 @@ pub fn flat(
     progress: &dyn Progress,
 ) -> Result<Vec<ViewErrors>> {
     let shading = [Interpolation::Flat];
-    let found = errors(reference, candidates, views, shading, progress)?;
+    let found = errors(reference, candidates, views, &shading, progress)?;
     Ok(found.into_iter().flatten().collect())
 }
 
@@ -109,24 +127,28 @@ pub fn image_error_views(sphere: &Sphere, size: u32, samples: u32) -> Result<Vie
         .with_samples(samples)
 }
 
-/// Draws and compares; for each candidate the errors in every shading, in order.
-fn errors<const N: usize>(
+/// Draws and compares; for each candidate the errors in every shading, in order. Candidates without stored normals are
+/// left out of the lit one, which is the last.
+fn errors(
     reference: &Scene,
     candidates: &[Scene],
     views: &ViewSet,
-    shadings: [Interpolation; N],
+    shadings: &[Interpolation],
     progress: &dyn Progress,
 ) -> Result<Vec<Vec<ViewErrors>>> {
     for scene in std::iter::once(reference).chain(candidates) {
         require_finite(scene)?;
     }
     let compare = |view: &View| -> Result<Vec<Vec<SquaredError>>> {
-        let shaded = shadings.map(|i| with(view, i));
-        let expected = shaded.map(|view| luma_sums(reference, &view, views));
+        let drawn = |&interpolation: &Interpolation| {
+            let view = with(view, interpolation);
+            (view, luma_sums(reference, &view, views))
+        };
+        let expected: Vec<(View, Grid<u16>)> = shadings.iter().map(drawn).collect();
         let samples = views.samples * views.samples;
-        let errors = |scene| -> Result<Vec<SquaredError>> {
-            let pairs = shaded.iter().zip(&expected);
-            let error = |(view, expected)| {
+        let errors = |scene: &Scene| -> Result<Vec<SquaredError>> {
+            let pairs = expected.iter().filter(|(view, _)| shows(scene, view));
+            let error = |(view, expected): &(View, Grid<u16>)| {
                 let actual = luma_sums(scene, view, views);
                 squared_error(expected, &actual, samples)
             };
@@ -144,12 +166,19 @@ fn errors<const N: usize>(
         }
     }
     progress.step("compare pictures", count as u64, count as u64)?;
-    let errors = |candidate: usize, shading: usize| {
-        ViewErrors::new(found.iter().map(|view| view[candidate][shading]).collect())
+    let errors = |candidate: usize| {
+        let count = found.first().map_or(shadings.len(), |v| v[candidate].len());
+        let of = |shading: usize| {
+            ViewErrors::new(found.iter().map(|view| view[candidate][shading]).collect())
+        };
+        (0..count).map(of).collect()
     };
-    (0..candidates.len())
-        .map(|candidate| (0..N).map(|shading| errors(candidate, shading)).collect())
-        .collect()
+    (0..candidates.len()).map(errors).collect()
+}
+
+/// False where a view shows stored normals and the scene has none.
+fn shows(scene: &Scene, view: &View) -> bool {
+    view.shading.interpolation != Interpolation::Lit || !scene.stored_normals().is_empty()
 }
 
 /// The pictures that [`appearance`] compared in one view, each pixel rounded to the mean of its samples: for eyes.

@@ -2,7 +2,7 @@
 //!
 //! A vertex is transformed in `f64`, snapped to sub-pixel integers ([`Projector`]), and from there on everything is
 //! integer: edge functions, the top-left rule, scanline spans by exact division, depth by exact division. A sample shows
-//! the least [`SampleKey`]: the minimum over depth and id. Shading happens per triangle or per vertex in `f64` with
+//! the least [`SampleKey`]: the minimum over depth and id. Shading happens per triangle, vertex or corner in `f64` with
 //! `+ - * / sqrt` and becomes an 8-bit level before images are compared.
 //!
 //! `draw` makes whole pictures: [`luma`], [`rgb`], [`keys`] and what follows from them. `unrender` lets pictures follow
@@ -22,7 +22,8 @@ pub use draw::{
 };
 pub use pixel_rect::PixelRect;
 pub use sample_key::SampleKey;
-pub use scene::Scene;
+pub use scene::{Scene, stored_normal};
 pub use unrender::{
-    BucketEngine, LayerEngine, Model, SceneEdit, Unrender, UnrenderScratch, ViewSubset,
+    BucketEngine, CornerValues, LayerEngine, Model, SceneEdit, Unrender, UnrenderScratch,
+    ViewSubset,
 };

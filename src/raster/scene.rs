@@ -1,4 +1,4 @@
-//! [`Scene`]: triangles with stable ids, their geometry, vertex normals and colours.
+//! [`Scene`]: triangles with stable ids, their geometry, vertex normals, stored normals and colours.
 
 use std::sync::OnceLock;
 
@@ -20,16 +20,22 @@ pub struct Scene {
     by_id: Vec<u32>,
     /// Made when first asked for: pictures without Gouraud shading need none.
     normals: OnceLock<Vec<DVec3>>,
+    stored_normals: Vec<[DVec3; 3]>,
     colors: Vec<[[f64; 3]; 3]>,
 }
 
 impl Scene {
-    /// The triangles of a mesh, with ids in file order from 0, and its vertex colours if it has any (opacity is
-    /// ignored, absent colours are white).
+    /// The triangles of a mesh, with ids in file order from 0, its normals if it stores any, and its vertex colours if
+    /// it has any (opacity is ignored, absent colours are white).
     pub fn of(mesh: &FramedMesh) -> Self {
         let ids = (0..mesh.triangles().len() as u32).collect();
         let mut scene = Self::new(mesh.positions().to_vec(), mesh.triangles().to_vec(), ids);
         let attributes = mesh.in_frame_units().attributes();
+        if let Some(channel) = attributes.channel(ChannelKind::Normal) {
+            let normal = |wedge: u32| stored_normal(attributes.value(channel, wedge));
+            let corners = attributes.corners().iter();
+            scene.stored_normals = corners.map(|c| c.map(normal)).collect();
+        }
         let channel = attributes
             .channel(ChannelKind::Color)
             .or_else(|| attributes.channel(ChannelKind::ColorAlpha));
@@ -63,6 +69,7 @@ impl Scene {
             ids,
             by_id,
             normals: OnceLock::new(),
+            stored_normals: Vec::new(),
             colors: Vec::new(),
         }
     }
@@ -80,6 +87,20 @@ impl Scene {
         self
     }
 
+    /// With a unit normal at the corners of every triangle, zero where there is none; without stored normals again where
+    /// `normals` is empty.
+    ///
+    /// # Panics
+    /// Where `normals` covers some of the triangles only.
+    pub fn with_stored_normals(mut self, normals: Vec<[DVec3; 3]>) -> Self {
+        assert!(
+            normals.is_empty() || normals.len() == self.triangles.len(),
+            "normals for every triangle"
+        );
+        self.stored_normals = normals;
+        self
+    }
+
     /// Positions.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
@@ -93,6 +114,12 @@ impl Scene {
     /// Red, green and blue in [0, 1] at the corners of every triangle; empty where everything is white.
     pub fn colors(&self) -> &[[[f64; 3]; 3]] {
         &self.colors
+    }
+
+    /// Unit normals at the corners of every triangle as the mesh stores them, zero where it stores none there; empty
+    /// where it stores no normals at all.
+    pub fn stored_normals(&self) -> &[[DVec3; 3]] {
+        &self.stored_normals
     }
 
     /// Number of triangles.
@@ -159,5 +186,13 @@ impl Scene {
             screen: positions.map(|p| projector.screen(p)),
             paint,
         }
+    }
+}
+
+/// The unit normal of the three values that a mesh stores at a corner; zero where they are absent or have no direction.
+pub fn stored_normal(values: &[f64]) -> DVec3 {
+    match *values {
+        [x, y, z] => unit(DVec3::new(x, y, z)).unwrap_or(DVec3::ZERO),
+        _ => DVec3::ZERO,
     }
 }

@@ -1,12 +1,14 @@
 //! Meshes, views and texts that several groups of cases use.
 
+use glam::DVec3;
+
 use super::Collector;
 use crate::{
     Error, Result,
     encode::{png::Picture, sheet::sheet},
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
-    num::Each,
-    raster::{Scene, luma_sums, mean_luma},
+    num::{Each, math::unit},
+    raster::{FaceGeometry, Scene, luma_sums, mean_luma},
     simplify::Outcome,
     view::{Cull, Sphere, View, ViewSet, frame_of},
 };
@@ -27,6 +29,36 @@ pub(super) fn colored(mesh: &Mesh) -> Mesh {
     let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
         .expect("a row for every vertex");
     let parts = mesh.clone().into_parts();
+    Mesh::new(MeshParts {
+        attributes,
+        ..parts
+    })
+    .expect("the mesh was valid before")
+}
+
+/// A torus that stores smooth normals, every third triangle its own, and none at every eleventh corner.
+pub(super) fn partly_smooth_torus(around: u32, across: u32) -> Mesh {
+    let mesh = generate::torus(1.0, 0.4, around, across);
+    let (mut values, mut corners) = (Vec::new(), Vec::new());
+    for (t, triangle) in (0..).zip(mesh.triangles()) {
+        let points = triangle.each(|v| mesh.positions()[v as usize]);
+        let own = FaceGeometry::new(points).normal;
+        let wedges = [3 * t, 3 * t + 1, 3 * t + 2];
+        for (wedge, p) in wedges.into_iter().zip(points) {
+            // Away from the circle in the middle.
+            let center = unit(DVec3::new(p.x, p.y, 0.0)).unwrap_or(DVec3::ZERO);
+            let smooth = unit(p - center).unwrap_or(own);
+            values.extend(match (t % 3, wedge % 11) {
+                (_, 0) => [f64::NAN; 3],
+                (0, _) => own.to_array(),
+                _ => smooth.to_array(),
+            });
+        }
+        corners.push(wedges);
+    }
+    let attributes =
+        Attributes::new(&[ChannelKind::Normal], values, corners).expect("a row for every corner");
+    let parts = mesh.into_parts();
     Mesh::new(MeshParts {
         attributes,
         ..parts

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     Collector,
-    fixtures::{colored, sphere_of},
+    fixtures::{colored, partly_smooth_torus, sphere_of},
 };
 use crate::{
     Error, Result,
@@ -37,6 +37,12 @@ struct Case {
 
 const GOURAUD: Shading = Shading {
     interpolation: Interpolation::Gouraud,
+    two_sided: true,
+    specular: None,
+};
+
+const LIT: Shading = Shading {
+    interpolation: Interpolation::Lit,
     two_sided: true,
     specular: None,
 };
@@ -190,6 +196,7 @@ fn probe_cases() -> Result<Vec<Case>> {
 fn torus_cases() -> Result<Vec<Case>> {
     let torus = || generate::torus(1.0, 0.4, 32, 16);
     let colors = || colored(&torus());
+    let normals = || partly_smooth_torus(24, 12);
     let engine = || generate::engine(1);
     Ok(vec![
         case("torus-gouraud", torus(), Show::Luma, &|m| {
@@ -208,6 +215,9 @@ fn torus_cases() -> Result<Vec<Case>> {
         case("torus-colored", colors(), Show::Rgb, &|m| around(m, 2, 96))?,
         case("torus-colored-gouraud", colors(), Show::Nothing, &|m| {
             around(m, 2, 64)?.with_shading(GOURAUD).with_samples(2)
+        })?,
+        case("torus-stored-normals", normals(), Show::Luma, &|m| {
+            around(m, 2, 96)?.with_shading(LIT).with_samples(2)
         })?,
         case("torus-lit-from-a-point", torus(), Show::Nothing, &|m| {
             let lamp = Light::Point(DVec3::new(2.0, -1.0, 3.0));

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     Collector,
-    fixtures::{colored, outcome_items, side_by_side, terrain, two_materials},
+    fixtures::{colored, outcome_items, partly_smooth_torus, side_by_side, terrain, two_materials},
 };
 use crate::{
     Error, Result,
@@ -58,22 +58,28 @@ fn geometric(collector: &mut Collector) -> Result<()> {
     Ok(())
 }
 
-/// Options of the image method for small meshes, a driving set each: flat, Gouraud and with interior views; every driving
+/// Options of the image method for small meshes, a driving set each: flat, Gouraud, lit and with interior views; every driving
 /// view of the published method, after memoryless pre-simplification; the steps of the default preset in small, turned
 /// cameras too, and with mixed shading.
-fn recipes() -> [ImageOptions; 6] {
+fn recipes() -> [ImageOptions; 7] {
     let small = ImageOptions {
         views: ViewsName::Octahedron(0),
         size: 64.into(),
         samples: 1,
         start: Start::Input,
         polish: Polish::default(),
+        // Some of the meshes store normals.
+        shading: DrivingShading::Flat,
         // What pictures do is recorded, whatever geometry would do.
         fall_back: false,
         ..ImageOptions::default()
     };
     let gouraud = ImageOptions {
         shading: DrivingShading::Gouraud,
+        ..small.clone()
+    };
+    let lit = ImageOptions {
+        shading: DrivingShading::Lit,
         ..small.clone()
     };
     let interior = ImageOptions {
@@ -105,12 +111,12 @@ fn recipes() -> [ImageOptions; 6] {
         shading: DrivingShading::Mixed,
         ..polished.clone()
     };
-    [small, gouraud, interior, published, polished, mixed]
+    [small, gouraud, lit, interior, published, polished, mixed]
 }
 
 /// The image method.
 fn by_images(collector: &mut Collector) -> Result<()> {
-    let [small, gouraud, interior, published, polished, mixed] = recipes();
+    let [small, gouraud, lit, interior, published, polished, mixed] = recipes();
     let torus = || generate::torus(1.0, 0.4, 16, 8);
     let textured = || generate::textured_torus(16, 8);
     let (shells, sphere) = (generate::shells(2, 2), generate::icosphere(3));
@@ -118,6 +124,7 @@ fn by_images(collector: &mut Collector) -> Result<()> {
         ("torus/image-flat", torus(), 90, &small),
         ("torus/image-gouraud", torus(), 90, &gouraud),
         ("cube/image-flat", generate::cube(), 8, &small),
+        ("torus/image-lit", partly_smooth_torus(16, 8), 90, &lit),
         ("textured-torus/image-flat", textured(), 120, &small),
         ("terrain/image-gouraud", terrain(), 120, &gouraud),
         ("two-materials/image-flat", two_materials(), 150, &small),

@@ -206,14 +206,21 @@ impl Options {
             if self.schedule == own.preset.schedule() {
                 self.schedule = preset.schedule();
             }
-            own.follow(preset, own.shading);
+            let unset = own.shading == own.preset.options().shading;
+            let shading = if unset {
+                preset.options().shading
+            } else {
+                own.shading
+            };
+            own.follow(preset, shading);
         } else {
             self.refuse("preset");
         }
         self
     }
 
-    /// The shading of the driving pictures, with the weights that the preset has for it.
+    /// The shading of the driving pictures, with the weights that the preset has for it; by default lit where the mesh
+    /// stores normals, else flat, as the published method always is.
     #[must_use]
     pub fn shading(self, shading: DrivingShading) -> Self {
         self.image_step("shading", |own| own.follow(own.preset, shading))

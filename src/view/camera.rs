@@ -49,6 +49,9 @@ pub enum Interpolation {
     Flat,
     /// At every vertex, with area-weighted normals; interpolated perspective-correctly.
     Gouraud,
+    /// At every corner, with the normal stored there, or the triangle's own where there is none; interpolated
+    /// perspective-correctly.
+    Lit,
 }
 
 /// A specular term for a light at the eye: intensity `(1 - strength) d + strength d^exponent` with `d = |n . l|`.
@@ -65,7 +68,7 @@ pub struct Specular {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shading {
-    /// Flat or Gouraud.
+    /// Flat, Gouraud or lit.
     pub interpolation: Interpolation,
     /// True: `|n . l|`; false: `max(0, n . l)`.
     pub two_sided: bool,

@@ -18,7 +18,7 @@
 //! | `eye` | `{"point": [x, y, z]}` where the viewer stands, or `{"axis": [x, y, z]}` towards an orthographic one |
 //! | `near`, `far` | distances of the planes that bound what is drawn |
 //! | `cull` | `"none"`, `"back"` or `"front"`: the side that is not drawn |
-//! | `shading` | `interpolation` `"flat"` or `"gouraud"`; `two_sided`; may have `"specular": {"strength": 0.3, "exponent": 20}` |
+//! | `shading` | `interpolation` `"flat"`, `"gouraud"` or `"lit"`; `two_sided`; may have `"specular": {"strength": 0.3, "exponent": 20}` |
 //! | `light` | `"headlight"`, `{"point": [x, y, z]}`, or `{"direction": [x, y, z]}` towards a light far away |
 //! | `sha256` | hashes of the images that belong to a view, by buffer; may be left out |
 //!

@@ -17,6 +17,7 @@ pub(super) fn shading_name(worst: WorstView) -> &'static str {
     match worst.shading {
         Interpolation::Flat => "flat",
         Interpolation::Gouraud => "Gouraud",
+        Interpolation::Lit => "lit",
     }
 }
 
@@ -30,17 +31,35 @@ fn shape_cells(file: &Path, shape: &MeshShape) -> Vec<String> {
     ]
 }
 
-/// Root mean squares, then signal-to-noise ratios.
-fn error_cells(rms: [f64; 2], psnr: [Option<f64>; 2]) -> impl Iterator<Item = String> {
-    let rms = rms.into_iter().map(|rms| format!("{rms:.4}"));
-    rms.chain(psnr.into_iter().map(|psnr| table::number(psnr, 2)))
+/// Root mean squares, then signal-to-noise ratios; those of stored normals only where `lit`.
+fn error_cells(
+    rms: [Option<f64>; 3],
+    psnr: [Option<f64>; 3],
+    lit: bool,
+) -> impl Iterator<Item = String> {
+    let shadings = if lit { 3 } else { 2 };
+    let rms = rms.into_iter().take(shadings);
+    let rms = rms.map(|rms| table::number(rms, 4));
+    let psnr = psnr.into_iter().take(shadings);
+    rms.chain(psnr.map(|psnr| table::number(psnr, 2)))
+}
+
+/// The names of the columns of [`error_cells`].
+fn error_head(lit: bool) -> &'static str {
+    match lit {
+        true => "RMS flat|Gouraud|lit|PSNR flat|Gouraud|lit",
+        false => "RMS flat|Gouraud|PSNR flat|Gouraud",
+    }
 }
 
 /// Prints a row for every mesh, the worst views, equation 5.11 and, where asked for, every view.
 pub(super) fn show(options: &CompareArgs, reference: &MeshShape, found: &[Judgement<'_>]) {
-    let head = "mesh|triangles|boundary|silhouette|RMS flat|Gouraud|PSNR flat|Gouraud|mean %|max %|folds|flipped|equal";
+    let lit = found.iter().any(|j| j.pictures.rms_lit.is_some());
+    let errors = error_head(lit);
+    let head =
+        format!("mesh|triangles|boundary|silhouette|{errors}|mean %|max %|folds|flipped|equal");
     let mut rows = vec![
-        table::head(head),
+        table::head(&head),
         shape_cells(&options.reference, reference),
     ];
     for j in found {
@@ -49,8 +68,13 @@ pub(super) fn show(options: &CompareArgs, reference: &MeshShape, found: &[Judgem
         let percent = |f: fn(Distances) -> f64| distances.map(|d| 100.0 * f(d));
         let folds = j.errors.folds.unwrap_or_default();
         let mut row = shape_cells(j.candidate.file, &j.candidate.shape);
-        let psnr = [errors.psnr_flat, errors.psnr_gouraud];
-        row.extend(error_cells([errors.rms_flat, errors.rms_gouraud], psnr));
+        let rms = [
+            Some(errors.rms_flat),
+            Some(errors.rms_gouraud),
+            errors.rms_lit,
+        ];
+        let psnr = [errors.psnr_flat, errors.psnr_gouraud, errors.psnr_lit];
+        row.extend(error_cells(rms, psnr, lit));
         row.extend([
             table::number(percent(|d| d.mean), 5),
             table::number(percent(|d| d.max), 4),
@@ -81,11 +105,13 @@ pub(super) fn show(options: &CompareArgs, reference: &MeshShape, found: &[Judgem
 }
 
 fn view_table(views: &[ViewReport]) -> String {
-    let mut rows = vec![table::head("view|RMS flat|Gouraud|PSNR flat|Gouraud")];
+    let lit = views.iter().any(|view| view.rms_lit.is_some());
+    let mut rows = vec![table::head(&format!("view|{}", error_head(lit)))];
     for v in views {
         let mut row = vec![v.view.to_string()];
-        let psnr = [v.psnr_flat, v.psnr_gouraud];
-        row.extend(error_cells([v.rms_flat, v.rms_gouraud], psnr));
+        let rms = [Some(v.rms_flat), Some(v.rms_gouraud), v.rms_lit];
+        let psnr = [v.psnr_flat, v.psnr_gouraud, v.psnr_lit];
+        row.extend(error_cells(rms, psnr, lit));
         rows.push(row);
     }
     table::aligned(&rows)

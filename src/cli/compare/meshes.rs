@@ -73,7 +73,7 @@ pub(super) fn run(options: &CompareArgs, common: &Common, terminal: &Terminal) -
         terminal.say(&format!("{}: written", path.display()));
     }
     let holds = found.iter().all(|j| {
-        let rms = j.pictures.rms_flat.max(j.pictures.rms_gouraud);
+        let rms = j.pictures.largest_rms();
         options.holds(j.equal, Some(rms))
     });
     report(common, "compare", options.in_report(set), &findings)?;

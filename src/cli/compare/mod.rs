@@ -1,7 +1,7 @@
 //! `lodmark compare`: how far results are from a reference, in pictures and in space.
 //!
 //! Meshes are judged as Lindstrom & Turk 2000, section 5 does: 24 views of 512 x 512 pixels around the reference, with
-//! 2 x 2 samples each, flat and Gouraud. Two images are equal, or it is said where and how much they are not.
+//! 2 x 2 samples each, flat, Gouraud, and lit where both store normals. Two images are equal, or it is said where and how much they are not.
 
 mod images;
 mod mesh_table;
@@ -22,7 +22,7 @@ welding. Distances go both ways, and the larger one is reported; in the table as
 bounding box, in the report in file units as well. PSNR is `-` (in the report: null) where nothing differs.
 
 The report has, for every candidate: rms_flat, rms_gouraud, psnr_flat, psnr_gouraud, squared_error_* (sum, pixels, \
-samples), worst, distance_mean, distance_rms, distance_max, views[]; with --image-error also image_error: error (the \
+samples); the same with _lit, with the normals that the meshes store, null where one of them stores none; worst, distance_mean, distance_rms, distance_max, views[]; with --image-error also image_error: error (the \
 root of the summed squared differences in levels, equation 5.11 of Zhang & Turk 2002), rms (the same per pixel, \
 comparable between sizes), squared_error, views (20).", &file_help::views()]))]
 pub(super) struct CompareArgs {
@@ -56,7 +56,7 @@ pub(super) struct CompareArgs {
     /// Exit with code 1 unless every candidate equals the reference
     #[arg(long)]
     equal: bool,
-    /// Exit with code 1 unless every RMS, flat and Gouraud, is at most this many levels, 0 to 255
+    /// Exit with code 1 unless every RMS, flat, Gouraud and lit, is at most this many levels, 0 to 255
     #[arg(long, value_name = "LEVELS", allow_negative_numbers = true)]
     max_rms: Option<f64>,
     /// Write expected, actual and difference of the worst view of every candidate, one row each

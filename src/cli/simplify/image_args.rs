@@ -21,7 +21,8 @@ pub(super) struct ImageArgs {
     /// Samples per pixel along each axis of the driving images: 1, 2 or 4 [default: by preset]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// The shading that the result will be seen with [default: flat]
+    /// The shading that the result will be seen with [default: auto, which is lit where the mesh stores normals, else flat;
+    /// preset paper: flat]
     #[arg(long, value_enum)]
     shading: Option<DrivingShading>,
     /// Number of the views that look through the front into the interior
@@ -53,8 +54,10 @@ impl ImageArgs {
                 path.display()
             )));
         }
-        let (preset, shading) = (self.preset.unwrap_or_default(), self.shading);
-        let default = preset.shaded(shading.unwrap_or_default());
+        let preset = self.preset.unwrap_or_default();
+        let default = self
+            .shading
+            .map_or_else(|| preset.options(), |s| preset.shaded(s));
         Ok(ImageOptions {
             views: self.views.clone().unwrap_or(default.views),
             size: self.size.map_or(default.size, Size::Pixels),

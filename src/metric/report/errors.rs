@@ -73,14 +73,20 @@ pub struct PictureReport {
     pub rms_flat: f64,
     /// RMS with intensities interpolated between vertices, in levels.
     pub rms_gouraud: f64,
+    /// RMS with the normals that the meshes store, in levels; `None` where one of them stores none.
+    pub rms_lit: Option<f64>,
     /// Flat peak signal-to-noise ratio in decibels; `None` where no pixel differs.
     pub psnr_flat: Option<f64>,
     /// Gouraud peak signal-to-noise ratio in decibels; `None` where no pixel differs.
     pub psnr_gouraud: Option<f64>,
+    /// Lit peak signal-to-noise ratio in decibels; `None` where no pixel differs or `rms_lit` is.
+    pub psnr_lit: Option<f64>,
     /// Exact sum behind `rms_flat`.
     pub squared_error_flat: SquaredError,
     /// Exact sum behind `rms_gouraud`.
     pub squared_error_gouraud: SquaredError,
+    /// Exact sum behind `rms_lit`.
+    pub squared_error_lit: Option<SquaredError>,
     /// The picture that differs most.
     pub worst: WorstView,
 }
@@ -126,14 +132,20 @@ pub struct ViewReport {
     pub rms_flat: f64,
     /// As [`PictureReport::rms_gouraud`], in this view.
     pub rms_gouraud: f64,
+    /// As [`PictureReport::rms_lit`], in this view.
+    pub rms_lit: Option<f64>,
     /// As [`PictureReport::psnr_flat`], in this view.
     pub psnr_flat: Option<f64>,
     /// As [`PictureReport::psnr_gouraud`], in this view.
     pub psnr_gouraud: Option<f64>,
+    /// As [`PictureReport::psnr_lit`], in this view.
+    pub psnr_lit: Option<f64>,
     /// Sum of squared differences, flat, in the unit of [`SquaredError::sum`].
     pub squared_error_flat: u64,
     /// Sum of squared differences, Gouraud, in the unit of [`SquaredError::sum`].
     pub squared_error_gouraud: u64,
+    /// Sum of squared differences, lit, in the unit of [`SquaredError::sum`]; `None` where `rms_lit` is.
+    pub squared_error_lit: Option<u64>,
 }
 
 impl MeshShape {
@@ -153,15 +165,26 @@ impl PictureReport {
     /// Sums up the errors of all views.
     pub(super) fn new(appearance: &Appearance) -> Self {
         let (flat, gouraud) = (appearance.flat.total(), appearance.gouraud.total());
+        let lit = appearance.lit.as_ref().map(ViewErrors::total);
         Self {
             rms_flat: flat.rms(),
             rms_gouraud: gouraud.rms(),
+            rms_lit: lit.map(SquaredError::rms),
             psnr_flat: flat.psnr(),
             psnr_gouraud: gouraud.psnr(),
+            psnr_lit: lit.and_then(SquaredError::psnr),
             squared_error_flat: flat,
             squared_error_gouraud: gouraud,
+            squared_error_lit: lit,
             worst: appearance.worst(),
         }
+    }
+
+    /// The largest RMS of all shadings, in levels.
+    #[must_use]
+    pub fn largest_rms(&self) -> f64 {
+        let smooth = self.rms_flat.max(self.rms_gouraud);
+        self.rms_lit.map_or(smooth, |lit| lit.max(smooth))
     }
 }
 
@@ -196,22 +219,27 @@ impl ViewReport {
     pub(super) fn of_all(set: &ViewSet, appearance: &Appearance) -> Vec<Self> {
         let (flat, gouraud) = (appearance.flat.views(), appearance.gouraud.views());
         let errors = flat.iter().zip(gouraud);
+        let lit = appearance.lit.as_ref().map(ViewErrors::views);
         let mut reports = Vec::with_capacity(set.views.len());
         for (view, (drawn, (flat, gouraud))) in set.views.iter().zip(errors).enumerate() {
             let (eye, axis) = match drawn.eye {
                 Eye::Point(eye) => (Some(eye.to_array()), None),
                 Eye::Axis(axis) => (None, Some(axis.to_array())),
             };
+            let lit = lit.and_then(|views| views.get(view).copied());
             reports.push(Self {
                 view,
                 eye,
                 axis,
                 rms_flat: flat.rms(),
                 rms_gouraud: gouraud.rms(),
+                rms_lit: lit.map(SquaredError::rms),
                 psnr_flat: flat.psnr(),
                 psnr_gouraud: gouraud.psnr(),
+                psnr_lit: lit.and_then(SquaredError::psnr),
                 squared_error_flat: flat.sum,
                 squared_error_gouraud: gouraud.sum,
+                squared_error_lit: lit.map(|error| error.sum),
             });
         }
         reports

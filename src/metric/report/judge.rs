@@ -22,7 +22,7 @@ use crate::{
 /// Measures how far candidates are from a reference.
 ///
 /// Meshes are taken as they are: weld them first, or seams count as boundaries. The same bits for every number of
-/// threads. Cost: two pictures of each mesh per view, and O(points log triangles) for distances.
+/// threads. Cost: two or three pictures of each mesh per view, and O(points log triangles) for distances.
 ///
 /// # Errors
 /// [`Error::Usage`] for a reference without triangles or options out of range; [`Error::Input`] and [`Error::Io`] for a

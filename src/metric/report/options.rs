@@ -10,7 +10,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CompareOptions {
-    /// Views that the pictures are compared in, flat and Gouraud [default: the 24 of a small rhombicuboctahedron];
+    /// Views that the pictures are compared in, flat, Gouraud, and lit where both meshes store normals [default: the 24 of a small rhombicuboctahedron];
     /// `None` draws none and leaves silhouettes out.
     pub views: Option<ViewsName>,
     /// Width and height of the pictures [default: 512]; a view file says its own.

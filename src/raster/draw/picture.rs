@@ -78,19 +78,31 @@ impl<'a> Shading<'a> {
     fn paint(&mut self, t: usize) -> Paint {
         let scene = self.scene;
         let colors = scene.colors().get(t);
-        if self.intensities.is_empty() {
-            let g = FaceGeometry::new(scene.points(t));
-            return Paint::flat(self.shader.intensity(g.centroid, g.normal), colors);
-        }
-        let corners = scene.triangles()[t].map(|v| {
-            let v = v as usize;
-            if self.intensities[v].is_nan() {
-                let (point, normal) = (scene.positions()[v], scene.normals()[v]);
-                self.intensities[v] = self.shader.intensity(point, normal);
+        match self.view.shading.interpolation {
+            Interpolation::Flat => {
+                let g = FaceGeometry::new(scene.points(t));
+                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
             }
-            self.intensities[v]
-        });
-        Paint::gouraud(corners, colors)
+            Interpolation::Gouraud => {
+                let corners = scene.triangles()[t].map(|v| self.intensity(v as usize));
+                Paint::gouraud(corners, colors)
+            }
+            Interpolation::Lit => {
+                let corners = self
+                    .shader
+                    .lit(scene.points(t), scene.stored_normals().get(t));
+                Paint::gouraud(corners, colors)
+            }
+        }
+    }
+
+    /// The Gouraud intensity of a vertex.
+    fn intensity(&mut self, v: usize) -> f64 {
+        if self.intensities[v].is_nan() {
+            let (point, normal) = (self.scene.positions()[v], self.scene.normals()[v]);
+            self.intensities[v] = self.shader.intensity(point, normal);
+        }
+        self.intensities[v]
     }
 
     /// Applies `tone` to the piece that the sample shows; `background` where it shows none.
@@ -148,7 +160,8 @@ impl<'a> Shading<'a> {
 
     /// True where every triangle has one level.
     fn is_flat_white(&self) -> bool {
-        self.intensities.is_empty() && self.scene.colors().is_empty()
+        let flat = self.view.shading.interpolation == Interpolation::Flat;
+        flat && self.scene.colors().is_empty()
     }
 
     /// As [`Shading::plane`] for levels, where every triangle has one.

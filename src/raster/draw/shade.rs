@@ -1,8 +1,9 @@
 //! Intensities: diffuse light on white, from geometry in `f64` with `+ - * / sqrt`.
 //!
 //! Flat: at the centroid with the triangle's own normal. Gouraud: at every vertex with the area-weighted sum of the
-//! normals around it (Lindstrom & Turk 2000, section 5.3, footnote 3), summed by ascending triangle id. A triangle's
-//! own quantities start at its lexicographically smallest corner, so its rotation changes no bit.
+//! normals around it (Lindstrom & Turk 2000, section 5.3, footnote 3), summed by ascending triangle id. Lit: at every
+//! corner with the normal that the mesh stores there. A triangle's own quantities start at its lexicographically smallest
+//! corner, so its rotation changes no bit.
 
 use glam::DVec3;
 
@@ -92,5 +93,25 @@ impl Shader {
             None => diffuse,
             Some(s) => (1.0 - s.strength) * diffuse + s.strength * power(diffuse, s.exponent),
         }
+    }
+
+    /// The intensities at the corners of a triangle with the unit normals that a mesh stores for them; a corner whose
+    /// normal is zero, and every one where the mesh stores none, has the triangle's own. The direction to the light is
+    /// that from each corner: a triangle with its own normals alone looks flat where the light is far away, and nearly so
+    /// elsewhere.
+    #[inline]
+    pub fn lit(&self, corners: [DVec3; 3], normals: Option<&[DVec3; 3]>) -> [f64; 3] {
+        let stored = normals.copied().unwrap_or_default();
+        let own = match stored.contains(&DVec3::ZERO) {
+            true => FaceGeometry::new(corners).normal,
+            false => DVec3::ZERO,
+        };
+        std::array::from_fn(|k| {
+            let normal = match stored[k] == DVec3::ZERO {
+                true => own,
+                false => stored[k],
+            };
+            self.intensity(corners[k], normal)
+        })
     }
 }

@@ -9,7 +9,7 @@ mod scene_edit;
 
 pub use buckets::BucketEngine;
 pub use layers::LayerEngine;
-pub use scene_edit::{Model, SceneEdit};
+pub use scene_edit::{CornerValues, Model, SceneEdit};
 
 use std::{any::Any, fmt};
 

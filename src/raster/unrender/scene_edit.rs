@@ -33,14 +33,22 @@ impl EditedCorner {
     }
 }
 
+/// Attributes at the corners of a triangle that pictures show.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CornerValues {
+    /// Red, green and blue; ignored where the model is white.
+    pub colors: [[f64; 3]; 3],
+    /// Unit normals, zero where the mesh stores none; ignored where the model has none.
+    pub normals: [DVec3; 3],
+}
+
 /// A triangle after an edit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EditedFace {
     pub(super) id: u32,
     pub(super) corners: [EditedCorner; 3],
     pub(super) positions: [DVec3; 3],
-    /// Red, green and blue at its corners; ignored where the model is white.
-    pub(super) colors: [[f64; 3]; 3],
+    pub(super) values: CornerValues,
     /// Normal and centroid, for flat shading; zeros where no view needs them.
     pub(super) geometry: FaceGeometry,
 }
@@ -109,14 +117,8 @@ impl SceneEdit {
     }
 
     /// A triangle comes, or has changed its shape: then it also goes.
-    pub fn add(
-        &mut self,
-        id: u32,
-        corners: [u32; 3],
-        positions: [DVec3; 3],
-        colors: [[f64; 3]; 3],
-    ) {
-        let face = self.face(id, corners, positions, colors);
+    pub fn add(&mut self, id: u32, corners: [u32; 3], positions: [DVec3; 3], values: CornerValues) {
+        let face = self.face(id, corners, positions, values);
         for corner in face.corners {
             match corner.moved() {
                 Some(_) => note(&mut self.movers, corner.moved),
@@ -132,14 +134,14 @@ impl SceneEdit {
         id: u32,
         corners: [u32; 3],
         positions: [DVec3; 3],
-        colors: [[f64; 3]; 3],
+        values: CornerValues,
     ) {
         let Ok(fate) = u16::try_from(self.restyled.len() + 2) else {
-            self.add(id, corners, positions, colors);
+            self.add(id, corners, positions, values);
             return self.remove(id, corners);
         };
         self.fates[id as usize] = fate;
-        let face = self.face(id, corners, positions, colors);
+        let face = self.face(id, corners, positions, values);
         self.restyled.push(face);
     }
 
@@ -159,7 +161,7 @@ impl SceneEdit {
         id: u32,
         corners: [u32; 3],
         positions: [DVec3; 3],
-        colors: [[f64; 3]; 3],
+        values: CornerValues,
     ) -> EditedFace {
         let entry = |list: &[(u32, DVec3)], v: u32| {
             let found = list.iter().position(|e| e.0 == v);
@@ -173,7 +175,7 @@ impl SceneEdit {
                 shaded: entry(&self.normals, vertex),
             }),
             positions,
-            colors,
+            values,
             geometry: if self.flat {
                 FaceGeometry::new(positions)
             } else {
@@ -229,24 +231,26 @@ pub struct Model {
     pub(super) normals: Vec<DVec3>,
     /// Corner colours by triangle id; empty where everything is white.
     pub(super) colors: Vec<[[f64; 3]; 3]>,
+    /// Stored corner normals by triangle id; empty where no view needs them, or the mesh stores none.
+    pub(super) stored_normals: Vec<[DVec3; 3]>,
 }
 
 impl Model {
     /// The model of a scene whose ids count from 0 without gaps.
     pub fn new(scene: &Scene, set: &ViewSet) -> Self {
-        let gouraud = set
-            .views
-            .iter()
-            .any(|v| v.shading.interpolation == Interpolation::Gouraud);
+        let shaded = |by| set.views.iter().any(|v| v.shading.interpolation == by);
         Self {
             positions: scene.positions().to_vec(),
             corners: scene.triangles().to_vec(),
-            normals: if gouraud {
-                scene.normals().to_vec()
-            } else {
-                Vec::new()
+            normals: match shaded(Interpolation::Gouraud) {
+                true => scene.normals().to_vec(),
+                false => Vec::new(),
             },
             colors: scene.colors().to_vec(),
+            stored_normals: match shaded(Interpolation::Lit) {
+                true => scene.stored_normals().to_vec(),
+                false => Vec::new(),
+            },
         }
     }
 
@@ -264,9 +268,24 @@ impl Model {
         for face in edit.after() {
             self.corners[face.id as usize] = face.corners.map(|c| c.vertex);
             if let Some(colors) = self.colors.get_mut(face.id as usize) {
-                *colors = face.colors;
+                *colors = face.values.colors;
+            }
+            if let Some(normals) = self.stored_normals.get_mut(face.id as usize) {
+                *normals = face.values.normals;
             }
         }
+    }
+
+    /// The corner colours of a face after an edit, where the model has any.
+    #[inline]
+    pub(super) fn colors_after<'a>(&self, face: &'a EditedFace) -> Option<&'a [[f64; 3]; 3]> {
+        (!self.colors.is_empty()).then_some(&face.values.colors)
+    }
+
+    /// The stored corner normals of a face after an edit, where the model has any.
+    #[inline]
+    pub(super) fn normals_after<'a>(&self, face: &'a EditedFace) -> Option<&'a [DVec3; 3]> {
+        (!self.stored_normals.is_empty()).then_some(&face.values.normals)
     }
 
     /// The position of a vertex after the change.

@@ -32,7 +32,7 @@ pub struct HeldOutViews {
 }
 
 impl HeldOutViews {
-    /// Draws `original`, the scene of `mesh`; both are in units of `frame`. The size of `own` must have been resolved.
+    /// Draws `original`, the scene of `mesh`; both are in units of `frame`. `own` must have been resolved.
     ///
     /// # Errors
     /// As [`ImageOptions::views`]; [`crate::Error::Interrupted`].
@@ -75,7 +75,7 @@ impl HeldOutViews {
 mod tests {
     use super::*;
     use crate::{
-        mesh::generate,
+        mesh::{Attributes, ChannelKind, generate},
         metric::appearance::appearance,
         simplify::image::{DrivingShading, Preset},
         view::frame_of,
@@ -83,8 +83,8 @@ mod tests {
 
     #[test]
     fn errors_are_those_that_compare_measures_in_the_same_views() {
-        let original = generate::torus(1.0, 0.4, 12, 8);
-        let coarse = generate::torus(1.0, 0.4, 8, 6);
+        let original = with_normals(generate::torus(1.0, 0.4, 12, 8));
+        let coarse = with_normals(generate::torus(1.0, 0.4, 8, 6));
         let frame = frame_of(&original);
         let own = ImageOptions {
             size: Size::Pixels(16),
@@ -92,7 +92,8 @@ mod tests {
         };
         let mesh = original.enter_frame(frame);
         let scene = Scene::of(&mesh);
-        let found = [DrivingShading::Flat, DrivingShading::Gouraud].map(|shading| {
+        use DrivingShading::{Flat, Gouraud, Lit};
+        let found = [Flat, Gouraud, Lit].map(|shading| {
             let own = ImageOptions {
                 shading,
                 ..own.clone()
@@ -110,5 +111,17 @@ mod tests {
         let judged = appearance(&scene, &[candidate], set, &crate::Silent).expect("drawn");
         assert_eq!(found[0].1, judged[0].flat.total());
         assert_eq!(found[1].1, judged[0].gouraud.total());
+        let lit = judged[0].lit.as_ref().map(ViewErrors::total);
+        assert_eq!(Some(found[2].1), lit);
+    }
+
+    /// With a normal at every vertex that has little to do with the surface.
+    fn with_normals(mesh: Mesh) -> Mesh {
+        let values = mesh.positions().iter().flat_map(|p| p.to_array());
+        let (values, corners) = (values.collect(), mesh.triangles().to_vec());
+        let mut parts = mesh.into_parts();
+        parts.attributes =
+            Attributes::new(&[ChannelKind::Normal], values, corners).expect("a row for each");
+        Mesh::new(parts).expect("valid before")
     }
 }

@@ -7,7 +7,8 @@
 //! see [`ImageDriven::with_swept_price`]. Evaluation is lazy as in section 4.2.2, but for the edges of a new vertex unless
 //! the preset is the paper's, where also every evaluation is in all views (see [`ImageDriven::with_view_stride`]); the
 //! pictures follow every collapse, by layers or as in section 4.2.3. Polishing by moves
-//! and flips, which the paper does not have, comes after the last collapse.
+//! and flips, which the paper does not have, comes after the last collapse. Pictures are lit with the normals that the mesh
+//! stores, if it does and nobody says otherwise (see [`DrivingShading`]).
 
 mod distance_penalty;
 mod fallback;
@@ -21,6 +22,7 @@ mod preset;
 mod reference_images;
 mod report;
 mod run;
+mod slots;
 
 pub use distance_penalty::DistancePenalty;
 pub use fallback::Comparison;

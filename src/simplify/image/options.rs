@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{super::memoryless::MemorylessOptions, Polish, Preset};
 use crate::{
     Error, Result,
-    mesh::FramedMesh,
+    mesh::{ChannelKind, FramedMesh, Mesh},
     num::Frame,
     view::{
         self, Interpolation, Projection, Shading, Specular, Sphere, ViewSet, ViewsName,
@@ -99,21 +99,36 @@ impl From<u32> for Size {
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum DrivingShading {
-    /// All flat.
+    /// Lit where the mesh stores normals, else flat. A view file says its own.
     #[default]
+    Auto,
+    /// All flat.
     Flat,
     /// All Gouraud.
     Gouraud,
     /// The first, third, ... Gouraud, the others flat.
     Mixed,
+    /// All with the normals that the mesh stores.
+    Lit,
 }
 
 impl DrivingShading {
-    /// The shading of the view at `index`.
+    /// The shading for a mesh: that which `Auto` stands for, by whether the mesh `stores_normals`.
+    #[must_use]
+    pub const fn resolved(self, stores_normals: bool) -> Self {
+        match self {
+            Self::Auto if stores_normals => Self::Lit,
+            Self::Auto => Self::Flat,
+            given => given,
+        }
+    }
+
+    /// The shading of the view at `index`; flat where it has not been resolved.
     #[must_use]
     pub const fn of_view(self, index: usize) -> Interpolation {
         match self {
-            Self::Flat => Interpolation::Flat,
+            Self::Auto | Self::Flat => Interpolation::Flat,
+            Self::Lit => Interpolation::Lit,
             Self::Gouraud => Interpolation::Gouraud,
             Self::Mixed if index.is_multiple_of(2) => Interpolation::Gouraud,
             Self::Mixed => Interpolation::Flat,
@@ -148,7 +163,7 @@ pub struct ImageOptions {
     /// Samples in a pixel along each axis: 1, 2 or 4.
     #[serde(default = "one")]
     pub samples: u32,
-    /// Flat, Gouraud, or some of each.
+    /// Flat, Gouraud, some of each, or lit.
     pub shading: DrivingShading,
     /// An optional specular term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -227,6 +242,20 @@ impl ImageOptions {
         Ok(())
     }
 
+    /// The options for a target and a mesh: the size follows from the one, the shading from the other, with the weights
+    /// that the preset has for it.
+    pub(super) fn resolved(&self, target: Option<usize>, mesh: &Mesh) -> Self {
+        let mut own = self.clone();
+        own.size = Size::Pixels(self.size.pixels(target));
+        let named = !matches!(self.views, ViewsName::File(_));
+        let stored = mesh.attributes().channel(ChannelKind::Normal);
+        own.follow(
+            self.preset,
+            self.shading.resolved(named && stored.is_some()),
+        );
+        own
+    }
+
     /// Whether the result is held against the memoryless method's; `only_counted`: nothing limits the run but a number
     /// of triangles.
     pub(super) fn is_contested(&self, only_counted: bool) -> bool {
@@ -235,7 +264,8 @@ impl ImageOptions {
     }
 
     /// The driving views onto `original`, which is in units of `frame`, turned as a whole for the given `round`; 0 is
-    /// not turned, and view files never are. A size that follows from the target must have been resolved.
+    /// not turned, and view files never are. A size that follows from the target and a shading that follows from the mesh
+    /// must have been resolved.
     ///
     /// # Errors
     /// [`Error::Usage`] for a mesh without triangles or more interior views than views; [`Error::Input`] and

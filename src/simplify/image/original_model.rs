@@ -19,7 +19,7 @@ pub struct OriginalModel {
 }
 
 impl OriginalModel {
-    /// Draws `mesh`, in units of `frame`, in the views of `set`; the size of `own` must have been resolved. In other views
+    /// Draws `mesh`, in units of `frame`, in the views of `set`; `own` must have been resolved. In other views
     /// as well where the result is to be `contested`. O(n log n + pixels).
     ///
     /// # Errors

@@ -3,20 +3,20 @@
 //!
 //! The pictures number vertices and triangles without gaps, in the order of the mesh's own ids, so that ties of depth
 //! are decided the same way. With Gouraud shading a collapse changes the normals of the whole link, and with them the
-//! shading of one more ring of triangles (Lindstrom & Turk 2000, footnote 3).
+//! shading of one more ring of triangles (Lindstrom & Turk 2000, footnote 3); with stored normals only that of its own
+//! faces.
 
 use glam::DVec3;
 
-use super::{EngineName, ReferenceImages};
+use super::{EngineName, ReferenceImages, slots::Slots};
 use crate::{
-    collapse::{LiveMesh, NONE, Patch},
-    mesh::{Channel, ChannelKind},
+    collapse::{LiveMesh, Patch},
     num::{
         Each,
         math::{sqrt, unit},
     },
     raster::{
-        self, BucketEngine, FaceGeometry, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender,
+        self, BucketEngine, FaceGeometry, Grid, LayerEngine, Model, SceneEdit, Unrender,
         UnrenderScratch, ViewSubset,
     },
     view::Interpolation,
@@ -54,9 +54,9 @@ pub struct PictureScratch {
 impl Pictures {
     /// Draws `live` in the views of the original's pictures (in the same frame), and compares them.
     pub fn new(reference: &ReferenceImages, live: &LiveMesh, engine: EngineName) -> Self {
-        let (slots, scene) = Slots::of(live);
         let set = reference.set();
         let shaded = |by| set.views.iter().any(|v| v.shading.interpolation == by);
+        let (slots, scene) = Slots::of(live, shaded(Interpolation::Lit));
         let (model, sums) = (Model::new(&scene, set), reference.sums());
         let engine: Box<dyn Unrender> = match engine {
             EngineName::Layers => Box::new(LayerEngine::new(model, set, sums)),
@@ -143,69 +143,6 @@ impl Pictures {
     }
 }
 
-/// Numbers of the mesh's triangles and vertices in the pictures.
-#[derive(Clone, Debug)]
-struct Slots {
-    triangles: Vec<u32>,
-    vertices: Vec<u32>,
-    color: Option<Channel>,
-}
-
-impl Slots {
-    /// Numbers the living triangles and their vertices, and gives the scene that they are.
-    fn of(live: &LiveMesh) -> (Self, Scene) {
-        let channels = live.rows().channels();
-        let color = [ChannelKind::Color, ChannelKind::ColorAlpha];
-        let mut slots = Self {
-            triangles: vec![NONE; live.triangle_ids() as usize],
-            vertices: vec![NONE; live.vertex_ids() as usize],
-            color: channels.iter().copied().find(|c| color.contains(&c.kind)),
-        };
-        let (mut positions, mut triangles, mut colors) = (Vec::new(), Vec::new(), Vec::new());
-        for id in 0..live.triangle_ids() {
-            let Some(corners) = live.triangle(id) else {
-                continue;
-            };
-            slots.triangles[id as usize] = triangles.len() as u32;
-            if slots.color.is_some() {
-                colors.push(slots.colors(live, &[], live.wedges(id)));
-            }
-            triangles.push(corners.each(|v| {
-                let slot = &mut slots.vertices[v as usize];
-                if *slot == NONE {
-                    *slot = positions.len() as u32;
-                    positions.push(live.position(v));
-                }
-                *slot
-            }));
-        }
-        let ids = (0..triangles.len() as u32).collect();
-        let scene = Scene::new(positions, triangles, ids);
-        (slots, scene.with_colors(colors))
-    }
-
-    /// Corner colours of a triangle with these wedges; `rows` holds wedges that the mesh does not have yet.
-    fn colors(&self, live: &LiveMesh, rows: &[f64], wedges: [u32; 3]) -> [[f64; 3]; 3] {
-        let Some(channel) = self.color else {
-            return [[1.0; 3]; 3];
-        };
-        wedges.each(|w| {
-            let row = if w < live.wedge_count() {
-                live.rows().row(w)
-            } else {
-                let stride = live.rows().stride();
-                &rows[(w - live.wedge_count()) as usize * stride..][..stride]
-            };
-            let v = &row[channel.offset..];
-            if v[0].is_nan() {
-                [1.0; 3]
-            } else {
-                [v[0], v[1], v[2]]
-            }
-        })
-    }
-}
-
 /// A triangle after the change, at a vertex whose normal may change.
 #[derive(Clone, Copy, Debug)]
 struct ShadedFace {
@@ -238,9 +175,8 @@ struct Translator {
 impl Translator {
     /// For pictures with these numbers; `flat` where one of them needs the geometry of faces.
     fn new(slots: &Slots, flat: bool) -> Self {
-        let triangles = slots.triangles.iter().filter(|&&slot| slot != NONE).count();
         Self {
-            edit: SceneEdit::new(triangles, flat || slots.color.is_some()),
+            edit: SceneEdit::new(slots.triangle_count(), flat || slots.has_colors()),
             ..Self::default()
         }
     }
@@ -260,17 +196,17 @@ impl Translator {
         let numbers = |corners: [u32; 3]| corners.each(|v| slots.vertices[v as usize]);
         for face in &patch.added {
             let (id, corners) = (slots.triangles[face.id as usize], numbers(face.corners));
-            let colors = slots.colors(live, &patch.rows, face.wedges);
+            let values = slots.values(live, &patch.rows, face.wedges);
             let points = patch.after(live, face);
-            self.edit.add(id, corners, points, colors);
+            self.edit.add(id, corners, points, values);
         }
         if gouraud {
             // Other faces at these vertices look different too.
             let removed = |id: u32| patch.removed.binary_search_by_key(&id, |f| f.id).is_ok();
             for face in self.faces.iter().filter(|f| !removed(f.id)) {
                 let (id, corners) = (slots.triangles[face.id as usize], numbers(face.corners));
-                let colors = slots.colors(live, &patch.rows, live.wedges(face.id));
-                self.edit.restyle(id, corners, face.points, colors);
+                let values = slots.values(live, &patch.rows, live.wedges(face.id));
+                self.edit.restyle(id, corners, face.points, values);
             }
         }
         for face in &patch.removed {
@@ -319,6 +255,7 @@ mod tests {
     use crate::{
         collapse::{Changes, EdgeStar, Rules, Site},
         mesh::{canonical, generate},
+        raster::Scene,
         view::frame_of,
     };
 
@@ -341,7 +278,7 @@ mod tests {
             };
             let mut patch = Patch::default();
             site.patch(position, &mut patch);
-            let (slots, _) = Slots::of(&live);
+            let (slots, _) = Slots::of(&live, false);
             let mut change = Translator::new(&slots, true);
             change.fill(&slots, &live, &patch, true);
             let before = change.edit.normals.clone();

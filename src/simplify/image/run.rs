@@ -2,7 +2,7 @@
 
 use super::{
     ImageDriven, ImageOptions, ImageReport, Limits, OriginalModel, PictureScratch, Pictures,
-    PolishCounters, Size, Start, fallback::Contest, polish,
+    PolishCounters, Start, fallback::Contest, polish,
 };
 use crate::{
     Progress, Result,
@@ -37,15 +37,11 @@ impl MethodRun for ImageOptions {
     }
 
     fn run(&self, run: Run<'_>) -> Result<Outcome> {
-        let own = Self {
-            size: Size::Pixels(self.size.pixels(run.target)),
-            ..self.clone()
-        };
-        by_images(&own, run)
+        by_images(&self.resolved(run.target, run.mesh), run)
     }
 }
 
-/// Lindstrom & Turk 2000, in stages; the size of `own` must have been resolved.
+/// Lindstrom & Turk 2000, in stages; `own` must have been resolved.
 fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     let (mesh, progress) = (run.mesh, run.progress);
     let limit = run.options.error_rms;

@@ -7,6 +7,7 @@
 
 use std::fs;
 
+use glam::DVec3;
 use lodmark::{
     encode::png,
     mesh::{Edges, Mesh, generate},
@@ -17,7 +18,9 @@ use tempfile::TempDir;
 
 use crate::{
     metric::appearance::shaken,
-    support::{bytes, code, expect, folder, json, lodmark, put, refused, stdout},
+    support::{
+        bytes, code, expect, folder, json, lodmark, meshes::with_normals, put, refused, stdout,
+    },
 };
 
 /// Runs `compare`, holds it to an exit code, and reads its report.
@@ -91,6 +94,47 @@ fn meshes_are_equal_where_their_files_hold_the_same() {
 }
 
 #[test]
+fn normals_are_judged_where_both_files_store_some() {
+    let dir = folder();
+    let radial = |mesh: &Mesh| with_normals(mesh, |_, p, _| Some(p));
+    let [fine, coarse] = [3, 2].map(generate::icosphere);
+    put(&dir, "a.obj", &radial(&fine));
+    put(&dir, "b.obj", &radial(&coarse));
+    put(&dir, "c.obj", &coarse);
+    let found = small(&dir, 0, "a.obj b.obj c.obj a.obj");
+    let [b, c, a] = [0, 1, 2].map(|i| found["candidates"][i].clone());
+    assert!(float(&b, "rms_lit") > 0.0 && float(&b, "psnr_lit") > 0.0);
+    assert!(float(&b["views"][0], "rms_lit") > 0.0);
+    assert!(c["rms_lit"].is_null() && c["squared_error_lit"].is_null());
+    assert!(c["views"][0]["rms_lit"].is_null());
+    assert_eq!(float(&a, "rms_lit"), 0.0);
+    // A column where there is something to see.
+    let table = |words: &str| {
+        let words = format!("compare {words} --size 32 --no-distance --per-view");
+        stdout(&lodmark(&dir, words.as_str()))
+    };
+    let heads = |words: &str| {
+        let text = table(words);
+        let heads = text.lines().filter(|line| line.contains("RMS flat"));
+        heads
+            .map(|line| line.matches(" lit").count())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(heads("a.obj b.obj"), [2, 2]);
+    assert_eq!(heads("a.obj c.obj"), [0, 0]);
+    // All pictures are held to a limit.
+    let mut sharp = radial(&fine).into_parts();
+    sharp.attributes = with_normals(&fine, |_, p, _| Some(DVec3::new(p.y, p.z, p.x)))
+        .attributes()
+        .clone();
+    put(&dir, "d.obj", &Mesh::new(sharp).expect("valid"));
+    let found = small(&dir, 1, "a.obj d.obj --max-rms 1");
+    assert_eq!(float(&found, "rms_flat"), 0.0);
+    assert!(float(&found, "rms_lit") > 1.0);
+    assert_eq!(found["worst"]["shading"], "lit");
+}
+
+#[test]
 fn a_limit_on_the_rms_holds_up_to_the_rms_itself() {
     let dir = folder();
     let mesh = generate::torus(1.0, 0.4, 12, 8);
@@ -145,8 +189,9 @@ fn the_report_counts_what_the_mesh_has() {
 #[test]
 fn the_rms_is_that_of_pictures_drawn_by_another_command() {
     let dir = folder();
-    put(&dir, "a.ply", &generate::torus(1.0, 0.4, 16, 10));
-    put(&dir, "b.ply", &generate::torus(1.0, 0.35, 9, 6));
+    let normals = |mesh: Mesh| with_normals(&mesh, |_, p, own| Some(p + own * 2.0));
+    put(&dir, "a.ply", &normals(generate::torus(1.0, 0.4, 16, 10)));
+    put(&dir, "b.ply", &normals(generate::torus(1.0, 0.35, 9, 6)));
     let drawn = |mesh: &str, to: &str, shading: &str| {
         let views = if mesh == "a.ply" {
             format!("rhombicuboctahedron --size 48 --shading {shading}")
@@ -158,7 +203,7 @@ fn the_rms_is_that_of_pictures_drawn_by_another_command() {
     };
     let words = "a.ply b.ply --size 48 --samples 1 --no-distance";
     let found = report(&dir, 0, words);
-    for shading in ["flat", "gouraud"] {
+    for shading in ["flat", "gouraud", "lit"] {
         drawn("a.ply", &format!("expected-{shading}"), shading);
         drawn("b.ply", &format!("actual-{shading}"), shading);
         let (mut sum, mut pixels) = (0.0, 0.0);

@@ -18,7 +18,7 @@ use lodmark::{
 };
 use proptest::prelude::*;
 
-use crate::support::{Impatient, Random, same_on_all_threads, scene_of};
+use crate::support::{Impatient, Random, meshes::with_normals, same_on_all_threads, scene_of};
 
 /// Small views around a mesh, in its units.
 fn views(mesh: &Mesh, size: u32, samples: u32) -> ViewSet {
@@ -115,6 +115,29 @@ proptest! {
 }
 
 #[test]
+fn stored_normals_are_compared_where_both_meshes_have_some() {
+    let radial = |mesh: &Mesh| with_normals(mesh, |_, p, _| Some(p));
+    let [fine, coarse] = [3, 2].map(generate::icosphere);
+    let views = views(&fine, 24, 2);
+    let (a, b) = (radial(&fine), radial(&coarse));
+    let scenes = [&b, &coarse, &a].map(scene_of);
+    let found = appearance(&scene_of(&a), &scenes, &views, &Silent).expect("finite");
+    let lit = found[0].lit.as_ref().expect("both have normals");
+    assert_eq!(sums(lit), by_hand(&a, &b, &views, Interpolation::Lit));
+    assert!(found[1].lit.is_none(), "the candidate has none");
+    let same = found[2].lit.as_ref().expect("both have normals");
+    assert!(same.total().is_zero());
+    let plain = judge(&fine, &b, &views);
+    assert!(plain.lit.is_none(), "the reference has none");
+    // The normals are no matter of the other shadings, nor of who else is judged.
+    assert_eq!(
+        (&plain.flat, &plain.gouraud),
+        (&found[0].flat, &found[0].gouraud)
+    );
+    assert_eq!(judge(&a, &b, &views), found[0]);
+}
+
+#[test]
 fn no_number_of_threads_changes_a_judgement() {
     // More triangles than the rasterizer draws in one piece.
     let mesh = generate::torus(1.0, 0.4, 256, 80);
@@ -145,8 +168,16 @@ fn the_worst_picture_is_the_first_largest_and_flat_before_gouraud() {
         ([0, 0, 0], [0, 0, 0], 0, Interpolation::Flat),
     ] {
         let (flat, gouraud) = (errors(&flat), errors(&gouraud));
-        let worst = Appearance { flat, gouraud }.worst();
+        let mut look = Appearance {
+            flat,
+            gouraud,
+            lit: None,
+        };
+        let worst = look.worst();
         assert_eq!((worst.view, worst.shading), (view, shading));
+        look.lit = Some(errors(&[0, 5, 7]));
+        let worst = look.worst();
+        assert_eq!((worst.view, worst.shading), (2, Interpolation::Lit));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The rasterizer and both un-rendering engines against oracles that share no code with them.
 
 mod coverage;
+mod lit;
 mod unrender;
 mod zbuffer;

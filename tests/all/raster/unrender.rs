@@ -4,7 +4,8 @@ use glam::DVec3;
 use lodmark::{
     num::fixed::SubpixelBits,
     raster::{
-        self, BucketEngine, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender, ViewSubset,
+        self, BucketEngine, CornerValues, Grid, LayerEngine, Model, Scene, SceneEdit, Unrender,
+        ViewSubset,
     },
     view::{Cull, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet},
 };
@@ -18,9 +19,31 @@ struct Patient {
     positions: Vec<DVec3>,
     triangles: Vec<Option<[u32; 3]>>,
     colors: Option<Vec<[[f64; 3]; 3]>>,
+    /// Stored normals, by number: see [`Patient::normals`].
+    marks: Option<Vec<[u32; 3]>>,
 }
 
 impl Patient {
+    /// Unit normals of a triangle in no relation to its neighbours', one in five absent.
+    fn normals(&self, t: usize) -> [DVec3; 3] {
+        let normal = |mark: u32| {
+            let [x, y, z] = [7, 11, 13].map(|m| f64::from(mark % m) - f64::from(m / 2));
+            match mark % 5 {
+                0 => [f64::NAN; 3],
+                _ => [x, y, z],
+            }
+        };
+        let marks = self.marks.as_ref().map_or([0; 3], |marks| marks[t]);
+        marks.map(|mark| raster::stored_normal(&normal(mark)))
+    }
+
+    fn values(&self, t: usize) -> CornerValues {
+        CornerValues {
+            colors: self.colors.as_ref().map_or([[0.0; 3]; 3], |c| c[t]),
+            normals: self.normals(t),
+        }
+    }
+
     fn scene(&self) -> Scene {
         let ids: Vec<u32> = (0..)
             .zip(&self.triangles)
@@ -32,7 +55,11 @@ impl Patient {
             .iter()
             .flat_map(|c| ids.iter().map(|&t| c[t as usize]));
         let colors = colors.collect();
-        Scene::new(self.positions.clone(), triangles, ids).with_colors(colors)
+        let marked = ids.iter().filter(|_| self.marks.is_some());
+        let normals = marked.map(|&t| self.normals(t as usize)).collect();
+        Scene::new(self.positions.clone(), triangles, ids)
+            .with_colors(colors)
+            .with_stored_normals(normals)
     }
 }
 
@@ -47,6 +74,8 @@ enum Step {
     Remove(prop::sample::Index),
     /// A triangle turns over.
     Turn(prop::sample::Index),
+    /// A triangle stores other normals.
+    Mark(prop::sample::Index, u32),
 }
 
 /// Mostly inside the unit ball; sometimes outside the frame, behind the eye, or on a coarse grid with ties of depth.
@@ -69,14 +98,18 @@ fn patient() -> impl Strategy<Value = Patient> {
         proptest::collection::vec(position(), 4..14),
         proptest::collection::vec(any::<[prop::sample::Index; 3]>(), 1..24),
         proptest::option::weighted(0.3, Just(())),
+        proptest::option::weighted(0.8, any::<u32>()),
     )
-        .prop_map(|(positions, triangles, colored)| {
+        .prop_map(|(positions, triangles, colored, marked)| {
             let corners = |t: &[prop::sample::Index; 3]| t.map(|i| i.index(positions.len()) as u32);
             let triangles: Vec<_> = triangles.iter().map(corners).map(Some).collect();
             let tone = |t: u32, k: u32, c: u32| f64::from((t * 7 + k * 3 + c * 5) % 11) / 10.0;
             let color = |t| [0, 1, 2].map(|k| [0, 1, 2].map(|c| tone(t, k, c)));
             let colors = colored.map(|()| (0..triangles.len() as u32).map(color).collect());
+            let mark = |seed: u32, t: u32| [0, 1, 2].map(|k| seed % 1_000 + t * 17 + k * 5);
+            let count = triangles.len() as u32;
             Patient {
+                marks: marked.map(|seed| (0..count).map(|t| mark(seed, t)).collect()),
                 positions,
                 triangles,
                 colors,
@@ -90,6 +123,7 @@ fn step() -> impl Strategy<Value = Step> {
         1 => (any::<prop::sample::Index>(), position()).prop_map(|(v, p)| Step::Move(v, p)),
         1 => any::<prop::sample::Index>().prop_map(Step::Remove),
         1 => any::<prop::sample::Index>().prop_map(Step::Turn),
+        1 => (any::<prop::sample::Index>(), 0..9_999_u32).prop_map(|(t, mark)| Step::Mark(t, mark)),
     ]
 }
 
@@ -99,7 +133,11 @@ fn shading() -> impl Strategy<Value = Shading> {
         exponent: 9,
     };
     let specular = prop_oneof![Just(None), Just(Some(shine))];
-    let interpolation = prop_oneof![Just(Interpolation::Flat), Just(Interpolation::Gouraud)];
+    let interpolation = prop_oneof![
+        Just(Interpolation::Flat),
+        Just(Interpolation::Gouraud),
+        Just(Interpolation::Lit)
+    ];
     let fields = (interpolation, any::<bool>(), specular);
     fields.prop_map(|(interpolation, two_sided, specular)| Shading {
         interpolation,
@@ -174,7 +212,13 @@ fn operate(before: &Patient, step: &Step) -> Option<Patient> {
                 return None;
             }
             after.positions[u as usize] = *p;
-            for corners in &mut after.triangles {
+            for (t, corners) in after.triangles.iter_mut().enumerate() {
+                // A corner that moves stores something else.
+                if let (Some(c), Some(marks)) = (corners.as_ref(), after.marks.as_mut()) {
+                    for k in (0..3).filter(|&k| c[k] == w) {
+                        marks[t][k] += 3;
+                    }
+                }
                 if corners.is_some_and(|c| c.contains(&u) && c.contains(&w)) {
                     *corners = None;
                 }
@@ -186,6 +230,7 @@ fn operate(before: &Patient, step: &Step) -> Option<Patient> {
         Step::Move(v, p) => after.positions[v.index(before.positions.len())] = *p,
         Step::Remove(t) => after.triangles[alive(t)?] = None,
         Step::Turn(t) => after.triangles[alive(t)?].as_mut()?.swap(0, 1),
+        Step::Mark(t, mark) => after.marks.as_mut()?[alive(t)?] = [*mark, mark / 7, mark / 49],
     }
     Some(after)
 }
@@ -212,18 +257,18 @@ fn difference(before: &Patient, after: &Patient, gouraud: bool) -> SceneEdit {
     (edit.moved, edit.normals) = (moved.clone(), normals.clone());
     for (t, (&a, &b)) in before.triangles.iter().zip(&after.triangles).enumerate() {
         let stays = a == b && !touched(&moved, a);
-        if stays && !touched(&normals, a) {
+        let marked = before.normals(t) != after.normals(t);
+        if stays && !marked && !touched(&normals, a) {
             continue;
         }
         if let Some(corners) = b {
             let positions = corners.map(|v| after.positions[v as usize]);
-            let colors = after.colors.as_ref().map_or([[0.0; 3]; 3], |c| c[t]);
             let put = if stays {
                 SceneEdit::restyle
             } else {
                 SceneEdit::add
             };
-            put(&mut edit, t as u32, corners, positions, colors);
+            put(&mut edit, t as u32, corners, positions, after.values(t));
         }
         if let (Some(corners), false) = (a, stays) {
             edit.remove(t as u32, corners);
@@ -265,6 +310,7 @@ fn a_vertex_that_moves_under_an_unchanged_normal_is_lit_anew() {
         positions: [rim.as_slice(), &[at(0.0, 0.0, 0.25)]].concat(),
         triangles: vec![Some([0, 1, 3]), Some([1, 2, 3]), Some([2, 0, 3])],
         colors: None,
+        marks: None,
     };
     let mut after = before.clone();
     after.positions[3] = at(0.125, 0.0, 0.5);
@@ -386,7 +432,14 @@ proptest! {
             c.rotate_left(turn(t));
             c
         }).collect());
-        let shuffled = Scene::new(start.positions.clone(), triangles, order.clone()).with_colors(colors);
+        let normals = order.iter().filter(|_| start.marks.is_some()).map(|&t| {
+            let mut n = start.normals(t as usize);
+            n.rotate_left(turn(t));
+            n
+        }).collect();
+        let shuffled = Scene::new(start.positions.clone(), triangles, order.clone())
+            .with_colors(colors)
+            .with_stored_normals(normals);
         for view in &set.views {
             let (a, b) = (raster::rgb(&start.scene(), view, &set), raster::rgb(&shuffled, view, &set));
             prop_assert_eq!(a, b);

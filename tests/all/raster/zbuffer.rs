@@ -33,6 +33,22 @@ fn one_by_one(scene: &Scene, ids: &[u32], view: &View, set: &ViewSet) -> (Vec<Sa
                 });
                 Paint::gouraud(intensity, colors)
             }
+            Interpolation::Lit => {
+                let own = FaceGeometry::new(positions).normal;
+                let stored = scene
+                    .stored_normals()
+                    .get(t)
+                    .map_or([DVec3::ZERO; 3], |n| *n);
+                let intensity = [0, 1, 2].map(|k| {
+                    let normal = if stored[k].length_squared() > 0.0 {
+                        stored[k]
+                    } else {
+                        own
+                    };
+                    shader.intensity(positions[k], normal)
+                });
+                Paint::gouraud(intensity, colors)
+            }
         };
         let face = Face {
             positions,
@@ -75,7 +91,11 @@ fn soup() -> impl Strategy<Value = Vec<[DVec3; 3]>> {
 fn set() -> impl Strategy<Value = ViewSet> {
     (
         prop_oneof![Just(0.3), Just(1.0)],
-        prop_oneof![Just(Interpolation::Flat), Just(Interpolation::Gouraud)],
+        prop_oneof![
+            Just(Interpolation::Flat),
+            Just(Interpolation::Gouraud),
+            Just(Interpolation::Lit)
+        ],
         prop_oneof![Just(SubpixelBits::Eight), Just(SubpixelBits::Sixteen)],
         prop_oneof![Just(Cull::None), Just(Cull::Front), Just(Cull::Back)],
         prop_oneof![
@@ -111,6 +131,7 @@ proptest! {
         soup in soup(),
         set in set(),
         colored in any::<bool>(),
+        marked in any::<bool>(),
         first_id in 0..9_u32,
         stride in prop_oneof![Just(1_u32), Just(5)],
     ) {
@@ -129,7 +150,14 @@ proptest! {
         } else {
             Vec::new()
         };
-        let scene = Scene::new(positions, triangles, ids.clone()).with_colors(colors);
+        let stored = |t: u32| [0, 1, 2].map(|k| {
+            let mark = f64::from((t * 3 + k) % 5);
+            raster::stored_normal(&[mark - 2.0, (mark - 2.0) * 0.5, (mark - 2.0) * mark])
+        });
+        let normals = (0..count).filter(|_| marked).map(stored).collect();
+        let scene = Scene::new(positions, triangles, ids.clone())
+            .with_colors(colors)
+            .with_stored_normals(normals);
         // One buffer for all views, as its users have it.
         let mut buffer = ZBuffer::new(1);
         for view in &set.views {

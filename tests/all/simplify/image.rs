@@ -21,7 +21,7 @@ use lodmark::{
     },
 };
 
-use crate::support::{collapse, framed, same_on_all_threads, scene_of, snapshot};
+use crate::support::{collapse, framed, meshes, same_on_all_threads, scene_of, snapshot};
 
 fn method(original: &Mesh, live: &LiveMesh, set: &ViewSet, price: f64) -> ImageDriven {
     let pictures = Pictures::new(&reference(original, set), live, EngineName::Buckets);
@@ -91,6 +91,10 @@ pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
         ("non-manifold", book),
         ("duplicate faces", mesh(&rim, fan.collect())),
         ("seams", canonical(&generate::textured_torus(10, 6)).mesh),
+        (
+            "hard normals",
+            canonical(&meshes::textured_torus(7, 5, 3, true)).mesh,
+        ),
     ]
 }
 
@@ -102,6 +106,10 @@ pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
     let outside = around(Projection::Perspective);
     let gouraud = Shading {
         interpolation: Interpolation::Gouraud,
+        ..Shading::default()
+    };
+    let lit = Shading {
+        interpolation: Interpolation::Lit,
         ..Shading::default()
     };
     let specular = Some(Specular {
@@ -135,6 +143,7 @@ pub(crate) fn view_sets(sphere: &Sphere) -> Vec<(&'static str, ViewSet)> {
         ("orthographic", around(Projection::Orthographic)),
         ("16 bits", all().with_subpixel(SubpixelBits::Sixteen)),
         ("2 x 2 samples", all().with_samples(2).expect("small")),
+        ("lit", all().with_shading(lit)),
         ("inside, near-clipped", inside),
     ]
 }

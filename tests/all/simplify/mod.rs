@@ -6,6 +6,7 @@ mod fallback;
 mod fold_repair;
 pub(crate) mod image;
 mod interior_views;
+mod lit;
 pub(crate) mod memoryless;
 pub(crate) mod options;
 pub(crate) mod polish;

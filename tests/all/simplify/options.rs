@@ -14,10 +14,11 @@ use lodmark::{
     view::ViewsName,
 };
 
-pub(crate) const SHADINGS: [DrivingShading; 3] = [
+pub(crate) const SHADINGS: [DrivingShading; 4] = [
     DrivingShading::Flat,
     DrivingShading::Gouraud,
     DrivingShading::Mixed,
+    DrivingShading::Lit,
 ];
 
 const PRESETS: [Preset; 4] = [Preset::Paper, Preset::Fast, Preset::Default, Preset::Best];

@@ -5,7 +5,7 @@ use lodmark::{
     collapse::LiveMesh,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts},
     num::Frame,
-    raster::Scene,
+    raster::{FaceGeometry, Scene},
     view::{Sphere, frame_of},
 };
 
@@ -125,6 +125,32 @@ pub(crate) fn textured_torus(n: usize, m: usize, seed: u64, flat: bool) -> Mesh 
         ..MeshParts::default()
     })
     .expect("valid")
+}
+
+/// `mesh` with a normal at every corner, absent where `normal` gives none: asked by the number of the corner, its position
+/// and the unit normal of its triangle. Other attributes are left behind.
+pub(crate) fn with_normals(
+    mesh: &Mesh,
+    normal: impl Fn(u32, DVec3, DVec3) -> Option<DVec3>,
+) -> Mesh {
+    let (mut values, mut corners) = (Vec::new(), Vec::new());
+    for (t, triangle) in (0..).zip(mesh.triangles()) {
+        let points = triangle.map(|v| mesh.positions()[v as usize]);
+        let own = FaceGeometry::new(points).normal;
+        let wedges = [3 * t, 3 * t + 1, 3 * t + 2];
+        for (wedge, p) in wedges.into_iter().zip(points) {
+            let normal = normal(wedge, p, own);
+            values.extend(normal.map_or([f64::NAN; 3], |n| n.to_array()));
+        }
+        corners.push(wedges);
+    }
+    let attributes = Attributes::new(&[ChannelKind::Normal], values, corners).expect("valid");
+    let parts = mesh.clone().into_parts();
+    Mesh::new(MeshParts {
+        attributes,
+        ..parts
+    })
+    .expect("the mesh was valid before")
 }
 
 /// A bumpy cube of six `n * n` sides; every side is a chart (if `charts`) and has its own material (if `materials`).

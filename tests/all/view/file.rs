@@ -27,7 +27,7 @@ proptest! {
             far: n(22).abs() * 3.1 + 1.0,
             cull: [Cull::None, Cull::Back, Cull::Front][cull],
             shading: Shading {
-                interpolation: Interpolation::Gouraud,
+                interpolation: [Interpolation::Gouraud, Interpolation::Lit][usize::from(background % 2)],
                 two_sided: specular,
                 specular: specular.then_some(Specular { strength: 0.1 + 0.2, exponent: 20 }),
             },

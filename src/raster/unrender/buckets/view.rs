@@ -23,9 +23,9 @@ pub(super) struct BucketView {
     shader: Shader,
     /// Every vertex on the screen.
     screen: Vec<ScreenVertex>,
-    /// Flat shading of white triangles: the level of every triangle. Gouraud shading: empty.
+    /// Flat shading of white triangles: the level of every triangle. Other shadings: empty.
     levels: Vec<u8>,
-    /// Gouraud shading: the intensity of every vertex. Flat shading: empty.
+    /// Gouraud shading: the intensity of every vertex. Other shadings: empty.
     intensities: Vec<f64>,
     /// The pixels every triangle can touch, as it is entered in the buckets.
     extents: Vec<PixelRect>,
@@ -66,7 +66,6 @@ impl BucketView {
         let shader = Shader::new(view);
         let image = projector.image();
         let (width, height) = (image.x1 as u32, image.y1 as u32);
-        let gouraud = view.shading.interpolation == Interpolation::Gouraud;
         let positions = model.positions.iter();
         let mut pictures = Self {
             view: *view,
@@ -82,13 +81,17 @@ impl BucketView {
             background: set.background,
             projector,
         };
-        if gouraud {
-            let vertices = model.positions.iter().zip(&model.normals);
-            pictures.intensities = vertices.map(|(&p, &n)| shader.intensity(p, n)).collect();
-        } else {
-            let points = |c: &[u32; 3]| c.map(|v| model.positions[v as usize]);
-            let faces = model.corners.iter().map(|c| FaceGeometry::new(points(c)));
-            pictures.levels = faces.map(|face| pictures.level(&face)).collect();
+        match view.shading.interpolation {
+            Interpolation::Flat => {
+                let points = |c: &[u32; 3]| c.map(|v| model.positions[v as usize]);
+                let faces = model.corners.iter().map(|c| FaceGeometry::new(points(c)));
+                pictures.levels = faces.map(|face| pictures.level(&face)).collect();
+            }
+            Interpolation::Gouraud => {
+                let vertices = model.positions.iter().zip(&model.normals);
+                pictures.intensities = vertices.map(|(&p, &n)| shader.intensity(p, n)).collect();
+            }
+            Interpolation::Lit => {}
         }
         let (mut keys, mut luma) = (pictures.keys.clone(), pictures.luma.clone());
         for id in 0..model.corners.len() as u32 {
@@ -117,14 +120,19 @@ impl BucketView {
     fn face(&self, model: &Model, id: u32) -> Face {
         let corners = model.corners[id as usize];
         let positions = corners.map(|v| model.positions[v as usize]);
-        let paint = match (self.intensities.is_empty(), model.colors.get(id as usize)) {
-            (true, None) => Paint::Flat(self.levels[id as usize]),
-            (true, colors) => {
+        let colors = model.colors.get(id as usize);
+        let paint = match self.view.shading.interpolation {
+            Interpolation::Flat if colors.is_none() => Paint::Flat(self.levels[id as usize]),
+            Interpolation::Flat => {
                 let g = FaceGeometry::new(positions);
                 Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
             }
-            (false, colors) => {
+            Interpolation::Gouraud => {
                 Paint::gouraud(corners.map(|v| self.intensities[v as usize]), colors)
+            }
+            Interpolation::Lit => {
+                let normals = model.stored_normals.get(id as usize);
+                Paint::gouraud(self.shader.lit(positions, normals), colors)
             }
         };
         Face {
@@ -141,16 +149,23 @@ impl BucketView {
         added: &EditedFace,
         (moved, shaded): (&[ScreenVertex], &[f64]),
     ) -> Face {
-        let colors = (!model.colors.is_empty()).then_some(&added.colors);
-        let paint = if self.intensities.is_empty() {
-            let g = &added.geometry;
-            Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
-        } else {
-            let intensities = added.corners.map(|c| match c.shaded() {
-                Some(entry) => shaded[entry],
-                None => self.intensities[c.vertex as usize],
-            });
-            Paint::gouraud(intensities, colors)
+        let colors = model.colors_after(added);
+        let paint = match self.view.shading.interpolation {
+            Interpolation::Flat => {
+                let g = &added.geometry;
+                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+            }
+            Interpolation::Gouraud => {
+                let intensities = added.corners.map(|c| match c.shaded() {
+                    Some(entry) => shaded[entry],
+                    None => self.intensities[c.vertex as usize],
+                });
+                Paint::gouraud(intensities, colors)
+            }
+            Interpolation::Lit => {
+                let normals = model.normals_after(added);
+                Paint::gouraud(self.shader.lit(added.positions, normals), colors)
+            }
         };
         Face {
             positions: added.positions,

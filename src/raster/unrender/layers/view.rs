@@ -88,7 +88,7 @@ impl LayerView {
             view: *view,
             shader: Shader::new(view),
             levels: Vec::new(),
-            plain: !gouraud && !colored,
+            plain: view.shading.interpolation == Interpolation::Flat && !colored,
             gouraud,
             background: set.background,
             lists: FragmentLists::new(width * height, set.background, &single, tiles, nothing),
@@ -191,17 +191,18 @@ impl LayerView {
     /// Paint of a triangle of the model.
     pub(super) fn paint_now(&self, model: &Model, id: u32, intensities: [f64; 3]) -> Paint {
         let colors = model.colors.get(id as usize);
-        if self.gouraud {
-            Paint::gouraud(intensities, colors)
-        } else if self.plain {
-            Paint::Flat(self.levels[id as usize])
-        } else {
-            let corners = model.corners[id as usize].map(|v| model.positions[v as usize]);
-            let geometry = FaceGeometry::new(corners);
-            Paint::flat(
-                self.shader.intensity(geometry.centroid, geometry.normal),
-                colors,
-            )
+        let corners = || model.corners[id as usize].map(|v| model.positions[v as usize]);
+        match self.view.shading.interpolation {
+            Interpolation::Flat if self.plain => Paint::Flat(self.levels[id as usize]),
+            Interpolation::Flat => {
+                let g = FaceGeometry::new(corners());
+                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+            }
+            Interpolation::Gouraud => Paint::gouraud(intensities, colors),
+            Interpolation::Lit => {
+                let normals = model.stored_normals.get(id as usize);
+                Paint::gouraud(self.shader.lit(corners(), normals), colors)
+            }
         }
     }
 
@@ -232,16 +233,23 @@ impl LayerView {
         face: &EditedFace,
         shaded: &[f64],
     ) -> Face {
-        let colors = (!context.model.colors.is_empty()).then_some(&face.colors);
-        let paint = if self.gouraud {
-            let intensities = face.corners.map(|c| match c.shaded() {
-                Some(entry) => shaded[entry],
-                None => context.part.intensities[context.intensity(c.vertex)],
-            });
-            Paint::gouraud(intensities, colors)
-        } else {
-            let g = &face.geometry;
-            Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+        let colors = context.model.colors_after(face);
+        let paint = match self.view.shading.interpolation {
+            Interpolation::Flat => {
+                let g = &face.geometry;
+                Paint::flat(self.shader.intensity(g.centroid, g.normal), colors)
+            }
+            Interpolation::Gouraud => {
+                let intensities = face.corners.map(|c| match c.shaded() {
+                    Some(entry) => shaded[entry],
+                    None => context.part.intensities[context.intensity(c.vertex)],
+                });
+                Paint::gouraud(intensities, colors)
+            }
+            Interpolation::Lit => {
+                let normals = context.model.normals_after(face);
+                Paint::gouraud(self.shader.lit(face.positions, normals), colors)
+            }
         };
         Face {
             paint,
