@@ -1,11 +1,14 @@
 //! Meshes, views and texts that several groups of cases use.
 
+use glam::DVec3;
+
 use super::Collector;
 use crate::{
     Error, Result,
     encode::{png::Picture, sheet::sheet},
+    geometry::area_normal,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
-    num::Each,
+    num::{Each, Precision, math::unit},
     raster::{Scene, luma_sums, mean_luma},
     simplify::Outcome,
     view::{Cull, Sphere, View, ViewSet, frame_of},
@@ -25,6 +28,29 @@ pub(super) fn colored(mesh: &Mesh) -> Mesh {
         values.extend(p.to_array().each(channel));
     }
     let attributes = Attributes::new(&[ChannelKind::Color], values, mesh.triangles().to_vec())
+        .expect("a row for every vertex");
+    let parts = mesh.clone().into_parts();
+    Mesh::new(MeshParts {
+        attributes,
+        ..parts
+    })
+    .expect("the mesh was valid before")
+}
+
+/// A mesh with a stored normal at every vertex: the direction of the sum of its faces' area normals.
+pub(super) fn lit(mesh: &Mesh) -> Mesh {
+    let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
+        for &v in triangle {
+            sums[v as usize] += area_normal(mesh.corners(t));
+        }
+    }
+    let normal = |&sum: &DVec3| {
+        let normal = Precision::F32.round_vector(unit(sum).unwrap_or(DVec3::Z));
+        normal.to_array()
+    };
+    let values = sums.iter().flat_map(normal).collect();
+    let attributes = Attributes::new(&[ChannelKind::Normal], values, mesh.triangles().to_vec())
         .expect("a row for every vertex");
     let parts = mesh.clone().into_parts();
     Mesh::new(MeshParts {

@@ -1,6 +1,6 @@
 //! The shared part of every run: the mesh that is collapsed, its history and its phases.
 
-use super::{MethodOptions, Options, Outcome, Phase, Report, repair_folds::repair_folds};
+use super::{MethodOptions, Options, Outcome, Phase, Report, normals, repair_folds::repair_folds};
 use crate::{
     Error, Progress, Result, Silent,
     collapse::{
@@ -100,7 +100,7 @@ impl<'a> Run<'a> {
         Ok(Self {
             mesh,
             live: LiveMesh::new(mesh, frame),
-            options: options.clone(),
+            options: options.clone().normals(options.normals.of(mesh)),
             target: options.target.of(mesh.triangles().len())?,
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
@@ -229,7 +229,7 @@ impl<'a> Run<'a> {
         stop
     }
 
-    /// Repairs folds where the options ask for it, and ends the run.
+    /// Repairs folds where the options ask for it, and ends the run. Normals follow from the mesh that is then there.
     pub(super) fn finish(mut self, stop: Stop, report: Report) -> Result<Outcome> {
         if self.options.unfold {
             repair_folds(
@@ -246,16 +246,22 @@ impl<'a> Run<'a> {
     fn outcome(self, stop: Stop, report: Report) -> Result<Outcome> {
         let json =
             serde_json::to_string(&self.options).map_err(|e| Error::Internal(e.to_string()))?;
-        let mesh = match stop {
-            Stop::TargetAboveInput => self.mesh.clone(),
-            _ => self.live.to_mesh()?,
+        let history = self.recorder.finish(json);
+        let (mesh, normals) = match stop {
+            Stop::TargetAboveInput => (self.mesh.clone(), None),
+            _ if history.is_empty() => (self.live.to_mesh()?, None),
+            _ => {
+                let carried = self.live.to_mesh()?;
+                normals::settle(self.mesh, carried, self.options.normals, self.progress)?
+            }
         };
         Ok(Outcome {
             mesh,
-            history: self.recorder.finish(json),
+            history,
             stop,
             phases: self.phases,
             options: self.options,
+            normals,
             report,
         })
     }

@@ -11,10 +11,10 @@
 use serde::Serialize;
 
 use super::{
-    super::{Options, Outcome, Report, Target, run::simplify_in_pool},
+    super::{Normals, Options, Outcome, Report, Target, run::simplify_in_pool},
     HeldOutViews, ImageOptions, ImageReport,
 };
-use crate::{Progress, Result, collapse::Rules, mesh::Mesh, metric::luma::SquaredError};
+use crate::{Progress, Result, mesh::Mesh, metric::luma::SquaredError};
 
 /// Images pay where they leave less than this share of the RMS: views differ by about as much (0.974 in these views was
 /// 1.014 in those of `lodmark compare` for Gouraud pictures of a torus of 4,608 triangles). Where no picture can tell the
@@ -69,8 +69,9 @@ impl Contest<'_> {
             return Ok(images);
         }
         let ours = self.held_out.error(&images.mesh)?;
-        let options = self.memoryless(images.options.rules, triangles);
-        let quick = simplify_in_pool(&self.start, &options, progress)?;
+        let options = self.memoryless(&images.options, triangles);
+        let plain = options.clone().normals(Normals::Carry);
+        let quick = simplify_in_pool(&self.start, &plain, progress)?;
         let others = self.held_out.error(&quick.mesh)?;
         if below(ours, others, PLAIN) && others.rms() >= PLAINLY_RESOLVED {
             return Ok(images);
@@ -105,10 +106,11 @@ impl Contest<'_> {
         Ok(images)
     }
 
-    /// The memoryless method as its own defaults have it, within the topology of `rules`.
-    fn memoryless(&self, rules: Rules, triangles: usize) -> Options {
+    /// The memoryless method as its own defaults have it, within the topology and with the normals of `images`.
+    fn memoryless(&self, images: &Options, triangles: usize) -> Options {
         let target = Target::triangles(triangles as u64);
-        Options::new(self.own.placement, target).topology(rules.topology)
+        let own = Options::new(self.own.placement, target);
+        own.topology(images.rules.topology).normals(images.normals)
     }
 }
 

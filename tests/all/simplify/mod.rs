@@ -7,6 +7,7 @@ mod fold_repair;
 pub(crate) mod image;
 mod interior_views;
 pub(crate) mod memoryless;
+pub(crate) mod normals;
 pub(crate) mod options;
 pub(crate) mod polish;
 mod progress;
