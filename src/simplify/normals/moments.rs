@@ -86,9 +86,10 @@ impl Moments {
 
     fn of(face: &Face, density: f64, field: &NormalField<'_>, near: &mut u32) -> Self {
         let area = length(face.normal);
+        let direction = unit(face.normal).unwrap_or(DVec3::ZERO);
         let mut sums = Self {
             is_kept: face.is_unit,
-            own: [unit(face.normal).unwrap_or(DVec3::ZERO); 3],
+            own: [direction; 3],
             ..Self::default()
         };
         if area <= 0.0 || !face.has_normals {
@@ -106,7 +107,7 @@ impl Moments {
                 sums.is_kept = false;
                 continue;
             };
-            let (normal, trust) = trusted(shown, sums.own[0]);
+            let (normal, trust) = trusted(shown, direction);
             let weight = part * trust;
             sums.mixed[0] += v * w * weight;
             sums.mixed[1] += w * u * weight;
@@ -145,11 +146,9 @@ impl Moments {
         ];
         let right = [0, 1, 2].each(|k| self.normals[k] + mean * (hold[k] / mass));
         let determinant = rows[0].dot(minors[0]);
-        for k in 0..3 {
+        for (k, own) in self.own.iter_mut().enumerate() {
             let sum = right[0] * minors[0][k] + right[1] * minors[1][k] + right[2] * minors[2][k];
-            if let Some(own) = unit(sum / determinant) {
-                self.own[k] = own;
-            }
+            *own = unit(sum / determinant).unwrap_or(*own);
         }
     }
 }

@@ -17,7 +17,7 @@ fn fit_pays(name: &str, mesh: &Mesh, ratio: f64, pays: f64) {
     let settled = ways.map(|way| settle(mesh, carried.clone(), way, &Silent).expect("runs"));
     let price = settled
         .each_ref()
-        .map(|(_, report)| report.map(|r| r.stored_vertices));
+        .map(|(_, report)| report.map(|r| [r.stored_vertices_carried, r.stored_vertices]));
     let [fit, carry, recompute] = settled.map(|(settled, _)| lit_errors(mesh, &settled)[0]);
     say(&format!(
         "{name} at {ratio}: lit error {fit:.3}, carried {carry:.3} ({:.3}), recomputed {recompute:.3} ({:.3}); {price:?} vertices",
