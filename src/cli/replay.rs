@@ -11,6 +11,7 @@ use crate::{
     encode::bytes,
     io,
     mesh::{self, content_sha256},
+    simplify::normals::settle_level,
 };
 
 /// Rebuild any level of a recorded run: the mesh as the run had it there, bit for bit
@@ -71,7 +72,7 @@ pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) ->
     }
     let level = match replay.applied() {
         0 => mesh.clone(),
-        _ => live.to_mesh()?,
+        _ => settle_level(&mesh, live.to_mesh()?, &history, terminal).map_err(named)?,
     };
     for note in io::write(&options.output, &level)? {
         terminal.say(&format!("{}: {note}", options.output.display()));

@@ -51,6 +51,7 @@ pub use locks::Locks;
 pub use method::{Estimates, Evaluation, Method, MethodScratch, Plan, Proposal, Review};
 pub use observer::Observer;
 pub use patch::{Changes, Move, Patch, PatchFace};
+pub(crate) use pinch::Forest;
 pub use refusal::{Reason, Refusal, Refusals};
 pub use replay::Replay;
 pub use star::{Freedom, Star};

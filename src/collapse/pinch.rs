@@ -55,20 +55,20 @@ fn is_hub_pinched(sides: &[[u32; 2]]) -> bool {
 
 /// Disjoint sets of the numbers below a count; each has its smallest member as its root.
 #[derive(Debug)]
-pub(super) struct Forest {
+pub(crate) struct Forest {
     parents: Vec<usize>,
 }
 
 impl Forest {
     /// Every number alone.
-    pub(super) fn of(count: usize) -> Self {
+    pub(crate) fn of(count: usize) -> Self {
         Self {
             parents: (0..count).collect(),
         }
     }
 
     /// The root of a number's set; makes the way there shorter.
-    pub(super) fn root(&mut self, mut at: usize) -> usize {
+    pub(crate) fn root(&mut self, mut at: usize) -> usize {
         while self.parents[at] != at {
             self.parents[at] = self.parents[self.parents[at]];
             at = self.parents[at];
@@ -77,7 +77,7 @@ impl Forest {
     }
 
     /// Makes one set of two.
-    pub(super) fn unite(&mut self, a: usize, b: usize) {
+    pub(crate) fn unite(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b)] = a.min(b);
     }

@@ -10,5 +10,5 @@ mod triangle_tree;
 
 pub use box3::Box3;
 pub use sym3::Sym3;
-pub use triangle::{Triangle, area_normal, axis_across, closest_point, double_area};
+pub use triangle::{Triangle, area_normal, axis_across, closest_point, double_area, part_weights};
 pub use triangle_tree::{TreeItem, TriangleTree};

@@ -25,6 +25,18 @@ pub fn double_area(corners: [DVec3; 3]) -> f64 {
     length(area_normal(corners))
 }
 
+/// Weights of the corners, which sum to `3k`, in the centroid of part `index` of `k * k` congruent parts of a triangle, in
+/// rows parallel to the side opposite to the first corner: row `r` has `r + 1` parts that stand like the triangle and `r`
+/// turned ones between them.
+pub fn part_weights(k: u32, index: u64) -> [u64; 3] {
+    let row = index.isqrt();
+    let within = index - row * row;
+    let (column, turned) = (within / 2, within % 2);
+    let of_c = 3 * column + 1 + turned;
+    let of_a = 3 * (u64::from(k) - row) - 2 + turned;
+    [of_a, 3 * u64::from(k) - of_a - of_c, of_c]
+}
+
 /// The coordinate axis that is farthest from a direction.
 pub fn axis_across(direction: DVec3) -> DVec3 {
     let size = direction.abs();

@@ -87,7 +87,7 @@ impl<T: TreeItem> TriangleTree<T> {
     /// Squared distance from `p` to the triangles and the index of a triangle of the tree that has it. `near` is a
     /// guess of that triangle: a good one saves time and changes no distance.
     pub fn squared_distance(&self, p: DVec3, near: u32) -> (f64, u32) {
-        self.search(p, (self.item(near).squared_distance(p), near))
+        self.search(p, (self.item(near).squared_distance(p), near), |_| true)
     }
 
     /// A triangle whose squared distance from `p` is below `limit`, the nearest one; `None` where there is none. `near`
@@ -101,13 +101,22 @@ impl<T: TreeItem> TriangleTree<T> {
                 best = (squared, near);
             }
         }
-        let (_, found) = self.search(p, best);
+        let (_, found) = self.search(p, best, |_| true);
         (found != NONE).then_some(found)
     }
 
-    /// The least squared distance below that of `best`, and the triangle that has it; `best` where there is none.
+    /// The nearest one of the triangles that `counts` admits whose squared distance from `p` is below `limit`; `None`
+    /// where there is none.
+    pub fn nearest_of(&self, p: DVec3, limit: f64, counts: impl Fn(&T) -> bool) -> Option<u32> {
+        const NONE: u32 = u32::MAX;
+        let (_, found) = self.search(p, (limit, NONE), counts);
+        (found != NONE).then_some(found)
+    }
+
+    /// The least squared distance below that of `best` of a triangle that `counts` admits, and that triangle; `best` where
+    /// there is none.
     #[inline]
-    fn search(&self, p: DVec3, mut best: (f64, u32)) -> (f64, u32) {
+    fn search(&self, p: DVec3, mut best: (f64, u32), counts: impl Fn(&T) -> bool) -> (f64, u32) {
         let mut stack = [(0_u32, 0.0_f64); DEPTH + 1];
         stack[0] = (0, self.nodes[0].bounds.squared_distance(p));
         let mut height = 1;
@@ -120,8 +129,9 @@ impl<T: TreeItem> TriangleTree<T> {
             let node = &self.nodes[index as usize];
             if node.count > 0 {
                 for i in node.index..node.index + node.count {
-                    let squared = self.items[i as usize].squared_distance(p);
-                    if squared < best.0 {
+                    let item = &self.items[i as usize];
+                    let squared = item.squared_distance(p);
+                    if squared < best.0 && counts(item) {
                         best = (squared, i);
                     }
                 }

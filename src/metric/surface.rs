@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::{
     Error, Progress, Result,
-    geometry::{Triangle, TriangleTree},
+    geometry::{Triangle, TriangleTree, part_weights},
     mesh::Mesh,
     num::{
         Each, Frame,
@@ -365,16 +365,8 @@ impl Plan {
     }
 }
 
-/// Centroid of part `index` of `k * k` congruent parts, in rows parallel to the side opposite to the first corner:
-/// row `r` has `r + 1` parts that stand like the triangle and `r` turned ones between them.
+/// Centroid of part `index` of `k * k` congruent parts.
 fn part_centroid([a, b, c]: [DVec3; 3], k: u32, index: u64) -> DVec3 {
-    let row = index.isqrt();
-    let within = index - row * row;
-    let (column, turned) = (within / 2, within % 2);
-    // Thirds of a division: weights of the corners that sum to 3k.
-    let of_c = 3 * column + 1 + turned;
-    let of_a = 3 * (u64::from(k) - row) - 2 + turned;
-    let whole = 3 * u64::from(k);
-    let of_b = whole - of_a - of_c;
-    (a * of_a as f64 + b * of_b as f64 + c * of_c as f64) / whole as f64
+    let [of_a, of_b, of_c] = part_weights(k, index).each(|w| w as f64);
+    (a * of_a + b * of_b + c * of_c) / (3 * u64::from(k)) as f64
 }

@@ -6,8 +6,9 @@ use super::Collector;
 use crate::{
     Error, Result,
     encode::{png::Picture, sheet::sheet},
+    geometry::area_normal,
     mesh::{Attributes, ChannelKind, Materials, Mesh, MeshParts, generate},
-    num::{Each, math::unit},
+    num::{Each, Precision, math::unit},
     raster::{FaceGeometry, Scene, luma_sums, mean_luma},
     simplify::Outcome,
     view::{Cull, Sphere, View, ViewSet, frame_of},
@@ -59,6 +60,29 @@ pub(super) fn partly_smooth_torus(around: u32, across: u32) -> Mesh {
     let attributes =
         Attributes::new(&[ChannelKind::Normal], values, corners).expect("a row for every corner");
     let parts = mesh.into_parts();
+    Mesh::new(MeshParts {
+        attributes,
+        ..parts
+    })
+    .expect("the mesh was valid before")
+}
+
+/// A mesh with a stored normal at every vertex: the direction of the sum of its faces' area normals.
+pub(super) fn lit(mesh: &Mesh) -> Mesh {
+    let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
+        for &v in triangle {
+            sums[v as usize] += area_normal(mesh.corners(t));
+        }
+    }
+    let normal = |&sum: &DVec3| {
+        let normal = Precision::F32.round_vector(unit(sum).unwrap_or(DVec3::Z));
+        normal.to_array()
+    };
+    let values = sums.iter().flat_map(normal).collect();
+    let attributes = Attributes::new(&[ChannelKind::Normal], values, mesh.triangles().to_vec())
+        .expect("a row for every vertex");
+    let parts = mesh.clone().into_parts();
     Mesh::new(MeshParts {
         attributes,
         ..parts

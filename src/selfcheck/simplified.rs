@@ -4,14 +4,16 @@ use glam::DVec3;
 
 use super::{
     Collector,
-    fixtures::{colored, outcome_items, partly_smooth_torus, side_by_side, terrain, two_materials},
+    fixtures::{
+        colored, lit, outcome_items, partly_smooth_torus, side_by_side, terrain, two_materials,
+    },
 };
 use crate::{
     Error, Result,
     bound::{tolerance::Source, view_cell::ViewCell},
     mesh::{canonical, generate},
     simplify::{
-        Options, Target, Topology,
+        Normals, Options, Target, Topology,
         image::{DrivingShading, ImageOptions, Polish, Preset, Start},
         simplify,
         tolerance::{Distance, ToleranceOptions},
@@ -23,6 +25,7 @@ use crate::{
 /// Every method on closed, open, seamed and coloured meshes.
 pub(super) fn simplified(collector: &mut Collector) -> Result<()> {
     geometric(collector)?;
+    with_normals(collector)?;
     by_images(collector)?;
     within_distance(collector)?;
     bounded(collector)?;
@@ -53,6 +56,24 @@ fn geometric(collector: &mut Collector) -> Result<()> {
             // What the rules refuse is recorded, whatever would give way for a target.
             let outcome = simplify(mesh, &options.topology(Topology::Preserve))?;
             outcome_items(collector, &format!("{name}/{method}"), &outcome);
+        }
+    }
+    Ok(())
+}
+
+/// Normals in every way, where most faces fold and where few do.
+fn with_normals(collector: &mut Collector) -> Result<()> {
+    let torus = lit(&generate::torus(1.0, 0.4, 24, 12));
+    for (name, normals) in [
+        ("fit", Normals::Fit),
+        ("carry", Normals::Carry),
+        ("recompute", Normals::Recompute),
+        ("drop", Normals::Drop),
+    ] {
+        for triangles in [60, 300] {
+            let options = Options::memoryless(Target::Triangles(triangles)).normals(normals);
+            let mesh = simplify(&torus, &options)?.mesh;
+            collector.mesh(&format!("lit-torus/{triangles}/normals-{name}"), &mesh);
         }
     }
     Ok(())

@@ -4,12 +4,14 @@
 //! ended. A method's folder has its `options`, its `run`, its `report` where it tells more than a mesh, and the parts
 //! of the method itself; `methods` lists them. [`memoryless`] and [`quadric`] are the baselines; other methods place
 //! vertices by them: [`mod@image`], [`tolerance`] and [`view_bounded`] by the first, [`visibility`] by the second.
+//! Whatever the method, [`mod@normals`] gives the result its stored normals in the end.
 
 pub mod billboards;
 mod concessions;
 pub mod image;
 pub mod memoryless;
 mod methods;
+pub mod normals;
 mod options;
 mod outcome;
 pub mod quadric;
@@ -24,6 +26,7 @@ pub mod visibility;
 /// [`Options`].
 pub use crate::collapse::{History, Locks, Replay, Rules, Schedule, Stop, Topology};
 pub use methods::{MethodName, MethodOptions, Report};
+pub use normals::{Normals, NormalsReport};
 pub use options::Options;
 pub use outcome::{Outcome, Phase};
 pub use run::{simplify, simplify_with};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    MethodOptions, Target,
+    MethodOptions, Normals, Target,
     image::{DrivingShading, EngineName, ImageOptions, Preset, Size, Start},
     memoryless::MemorylessOptions,
     methods::ErrorLimit,
@@ -54,6 +54,12 @@ pub struct Options {
     /// only for methods that know neither pictures nor a guarantee.
     #[serde(default)]
     pub unfold: bool,
+    /// The stored normals of the result. Of a run that is over: [`Normals::Carry`] where the input has none.
+    #[serde(
+        default = "Normals::carried",
+        skip_serializing_if = "Normals::are_carried"
+    )]
+    pub normals: Normals,
     /// The first step that meant nothing to the method.
     #[serde(skip)]
     pub(crate) foreign: Option<&'static str>,
@@ -78,6 +84,7 @@ impl Options {
             target,
             error_rms: None,
             measure_rank: 0,
+            normals: Normals::default(),
             foreign: None,
             settled: false,
         }
@@ -176,6 +183,14 @@ impl Options {
     #[must_use]
     pub fn error_rms(mut self, levels: f64) -> Self {
         self.error_rms = Some(levels);
+        self
+    }
+
+    /// The way in which a result gets its stored normals where the input has some; by default they are fitted to those. An
+    /// input that has no more triangles than wanted is copied with its own.
+    #[must_use]
+    pub fn normals(mut self, normals: Normals) -> Self {
+        self.normals = normals;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Options, Report};
+use super::{NormalsReport, Options, Report};
 use crate::{
     collapse::{Concession, Counters, History, Stop},
     mesh::Mesh,
@@ -40,6 +40,8 @@ pub struct Outcome {
     pub phases: Vec<Phase>,
     /// The options as they were used: nothing in them is left to a default.
     pub options: Options,
+    /// The price of its normals in vertices, where they are not those that the collapses carried.
+    pub normals: Option<NormalsReport>,
     /// The report of the method.
     pub report: Report,
 }

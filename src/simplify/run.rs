@@ -1,6 +1,6 @@
 //! The shared part of every run: the mesh that is collapsed, its history and its phases.
 
-use super::{MethodOptions, Options, Outcome, Phase, Report, repair_folds::repair_folds};
+use super::{MethodOptions, Options, Outcome, Phase, Report, normals, repair_folds::repair_folds};
 use crate::{
     Error, Progress, Result, Silent,
     collapse::{
@@ -112,7 +112,7 @@ impl<'a> Run<'a> {
             live,
             locked,
             seen_pieces: None,
-            options: options.clone(),
+            options: options.clone().normals(options.normals.of(mesh)),
             target: options.target.of(mesh.triangles().len())?,
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
@@ -232,7 +232,7 @@ impl<'a> Run<'a> {
         stop
     }
 
-    /// Repairs folds where the options ask for it, and ends the run.
+    /// Repairs folds where the options ask for it, and ends the run. Normals follow from the mesh that is then there.
     pub(super) fn finish(mut self, stop: Stop, report: Report) -> Result<Outcome> {
         if self.options.unfold {
             repair_folds(
@@ -251,17 +251,23 @@ impl<'a> Run<'a> {
         options.rules.concession = Concession::None;
         options.settled = false;
         let json = serde_json::to_string(&options).map_err(|e| Error::Internal(e.to_string()))?;
-        let mesh = match stop {
-            Stop::TargetAboveInput => self.mesh.clone(),
-            _ => self.live.to_mesh()?,
+        let history = self.recorder.finish(json);
+        let (mesh, normals) = match stop {
+            Stop::TargetAboveInput => (self.mesh.clone(), None),
+            _ if history.is_empty() => (self.live.to_mesh()?, None),
+            _ => {
+                let carried = self.live.to_mesh()?;
+                normals::settle(self.mesh, carried, options.normals, self.progress)?
+            }
         };
         Ok(Outcome {
             mesh,
-            history: self.recorder.finish(json),
+            history,
             stop,
             locked_vertices: self.locked,
             phases: self.phases,
             options,
+            normals,
             report,
         })
     }

@@ -8,7 +8,7 @@ use crate::{
     Error, Progress, Result,
     mesh::{Mesh, content_sha256},
     metric::{luma::SquaredError, report::Judge},
-    simplify::{Outcome, Replay},
+    simplify::{Outcome, Replay, normals::settle_level},
 };
 
 /// A level of a method, judged.
@@ -48,8 +48,8 @@ pub(super) struct Reached {
 pub(super) fn levels_of(
     original: &Mesh,
     outcome: &Outcome,
-    percents: &[f64],
-    targets: &[usize],
+    (percents, targets): (&[f64], &[usize]),
+    progress: &dyn Progress,
 ) -> Result<Vec<Reached>> {
     let mut replay = Replay::new(original, &outcome.history)?;
     let mut levels = Vec::with_capacity(targets.len());
@@ -57,7 +57,10 @@ pub(super) fn levels_of(
         replay.seek(target)?;
         let mesh = match replay.applied() {
             0 => original.clone(),
-            _ => replay.live().to_mesh()?,
+            _ => {
+                let level = replay.live().to_mesh()?;
+                settle_level(original, level, &outcome.history, progress)?
+            }
         };
         levels.push(Reached {
             method: outcome.options.method.name(),

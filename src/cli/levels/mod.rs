@@ -201,7 +201,7 @@ pub(super) fn run(options: &LevelsArgs, common: &Common, terminal: &Terminal) ->
     let (mut runs, mut reached) = (Vec::new(), Vec::new());
     for &method in &options.methods {
         let outcome = options.run(method, &mesh, &targets, visibility.as_ref(), terminal)?;
-        let levels = judge::levels_of(&mesh, &outcome, &percents, &targets)?;
+        let levels = judge::levels_of(&mesh, &outcome, (&percents, &targets), terminal)?;
         for level in levels.iter().filter(|_| options.meshes) {
             let name = format!("{}-{}.ply", level.method, level.percent);
             io::write(&folder.join(name), &level.mesh)?;

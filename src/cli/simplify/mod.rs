@@ -21,7 +21,7 @@ use crate::{
     io,
     mesh::content_sha256,
     simplify::{
-        MethodName, Options as RunOptions, Stop, Target,
+        MethodName, Normals, NormalsReport, Options as RunOptions, Stop, Target,
         image::{Comparison, PolishCounters},
         simplify_guided, simplify_with,
         tolerance::Guarantee,
@@ -91,6 +91,9 @@ pub(super) struct SimplifyArgs {
     lock_materials: bool,
     #[command(flatten)]
     image: ImageArgs,
+    /// The stored normals of the result, where IN has some
+    #[arg(long, value_enum, default_value_t = Normals::Fit)]
+    normals: Normals,
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
     #[arg(long, hide_short_help = true)]
     probabilistic: bool,
@@ -136,6 +139,9 @@ struct Summary<'a> {
     guarantee: Option<Guarantee>,
     #[serde(skip_serializing_if = "Option::is_none")]
     polish: Option<&'a PolishCounters>,
+    /// The price of normals that are not the carried ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    normals: Option<NormalsReport>,
     /// Of images and geometry, where they were close.
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
@@ -175,6 +181,7 @@ impl SimplifyArgs {
         let mut options = RunOptions::new(method, target);
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
+        options.normals = self.normals;
         options.unfold &= !self.keep_folds;
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
@@ -245,6 +252,7 @@ pub(super) fn run(
         locked_vertices: outcome.locked_vertices,
         triangles_drawn: run_log::triangles_drawn(&mesh, &outcome),
         polish: outcome.polish(),
+        normals: outcome.normals,
         comparison: outcome.comparison(),
         notes,
         content_sha256: content_sha256(&outcome.mesh),

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::{
     cli::terminal::Terminal,
     mesh::Mesh,
-    simplify::{Outcome, Phase, Stop, image::PolishCounters},
+    simplify::{Normals, NormalsReport, Outcome, Phase, Stop, image::PolishCounters},
 };
 
 /// Prints phases, guarantees and the way the run ended, in particular where that is short of the target.
@@ -45,6 +45,9 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             outcome.locked_vertices
         ));
     }
+    if let Some(report) = outcome.normals {
+        tell_normals(report, terminal);
+    }
     tell_stop(input, triangles_in, outcome, terminal);
 }
 
@@ -57,6 +60,19 @@ pub(super) fn triangles_drawn(mesh: &Mesh, outcome: &Outcome) -> Option<[usize; 
     });
     let stored = [mesh, &outcome.mesh].map(|m| m.triangles().len());
     (drawn != stored).then_some(drawn)
+}
+
+fn tell_normals(report: NormalsReport, terminal: &Terminal) {
+    let made = match report.normals {
+        Normals::Fit => "fitted",
+        Normals::Carry => "carried",
+        Normals::Recompute => "recomputed",
+        Normals::Drop => "dropped",
+    };
+    terminal.say(&format!(
+        "normals {made}: {} vertices are stored, {} as the collapses left them",
+        report.stored_vertices, report.stored_vertices_carried
+    ));
 }
 
 fn tell_phase(phase: &Phase, terminal: &Terminal) {

@@ -11,7 +11,7 @@
 use serde::Serialize;
 
 use super::{
-    super::{Options, Outcome, Report, Target, run::simplify_in_pool},
+    super::{Normals, Options, Outcome, Report, Target, run::simplify_in_pool},
     HeldOutViews, ImageOptions, ImageReport,
 };
 use crate::{Progress, Result, mesh::Mesh, metric::luma::SquaredError};
@@ -72,7 +72,8 @@ impl Contest<'_> {
         }
         let ours = self.held_out.error(&images.mesh)?;
         let options = self.memoryless(triangles);
-        let quick = simplify_in_pool(&self.start, &options, progress)?;
+        let plain = options.clone().normals(Normals::Carry);
+        let quick = simplify_in_pool(&self.start, &plain, progress)?;
         let others = self.held_out.error(&quick.mesh)?;
         if below(ours, others, PLAIN) && others.rms() >= PLAINLY_RESOLVED {
             return Ok(images);
@@ -107,11 +108,13 @@ impl Contest<'_> {
         Ok(images)
     }
 
-    /// The memoryless method as its own defaults have it, with the topology and the concessions of the run.
+    /// The memoryless method as its own defaults have it, with the topology, the concessions, the locks and the normals of
+    /// the run.
     fn memoryless(&self, triangles: usize) -> Options {
         let target = Target::triangles(triangles as u64);
-        let mut options =
-            Options::new(self.own.placement, target).topology(self.options.rules.topology);
+        let mut options = Options::new(self.own.placement, target)
+            .topology(self.options.rules.topology)
+            .normals(self.options.normals);
         options.rules.concession = self.options.rules.concession;
         options.rules.drop_pieces = self.options.rules.drop_pieces;
         options.locks = self.options.locks;

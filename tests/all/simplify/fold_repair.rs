@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lodmark::{
     mesh::{Mesh, generate},
-    simplify::{MethodOptions, Options, Outcome, Replay, Target, simplify},
+    simplify::{MethodOptions, Normals, Options, Outcome, Replay, Target, simplify},
 };
 use proptest::prelude::*;
 
@@ -17,6 +17,7 @@ fn methods(triangles: u64) -> [Options; 2] {
 fn run(mesh: &Mesh, options: &Options, unfold: bool) -> Outcome {
     let mut options = options.clone();
     options.unfold = unfold;
+    options.normals = Normals::Carry;
     simplify(mesh, &options).expect("runs")
 }
 

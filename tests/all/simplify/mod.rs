@@ -8,6 +8,7 @@ pub(crate) mod image;
 mod interior_views;
 mod lit;
 pub(crate) mod memoryless;
+pub(crate) mod normals;
 pub(crate) mod options;
 pub(crate) mod polish;
 mod progress;

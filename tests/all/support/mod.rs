@@ -4,6 +4,7 @@ mod command;
 mod folds;
 mod geometry;
 mod gltf;
+mod lit;
 pub(crate) mod meshes;
 mod models;
 pub(crate) mod oracle;
@@ -23,6 +24,7 @@ pub(crate) use geometry::{
     mesh_of, mixture, moved, square,
 };
 pub(crate) use gltf::GltfBuilder;
+pub(crate) use lit::lit_errors;
 pub(crate) use meshes::{framed, live, scene_of, snapshot};
 pub(crate) use models::{asset_file, model, read_model};
 pub(crate) use oracle::say;

@@ -127,7 +127,7 @@ fn note_dropped(
     }
     if !dropped.is_empty() {
         notes.push(format!(
-            "{name}: {} cannot be carried to the new vertices and is dropped",
+            "{name}: {} is dropped, for the new vertices have none",
             dropped.join(", ")
         ));
     }
