@@ -3,7 +3,7 @@
 use crate::{
     Error, Progress, Result, parallel,
     raster::{Grid, Scene, luma_sums},
-    view::ViewSet,
+    view::{Interpolation, ViewSet},
 };
 
 /// Pictures of the original in a set of views.
@@ -32,6 +32,12 @@ impl ReferenceImages {
     /// The views and the format of their pictures.
     pub fn set(&self) -> &ViewSet {
         &self.set
+    }
+
+    /// True where a view is lit by stored normals.
+    pub fn is_lit(&self) -> bool {
+        let mut views = self.set.views.iter();
+        views.any(|view| view.shading.interpolation == Interpolation::Lit)
     }
 
     /// The sum of the lumas of the samples in every pixel, for every view.

@@ -9,7 +9,7 @@ use crate::{
     collapse::{LiveMesh, Observer, Patch, Recorder, Rules, Schedule, Tiling},
     parallel,
     simplify::{
-        Outcome, Report,
+        Normals, Outcome, Report,
         memoryless::Memoryless,
         methods::{ErrorLimit, MethodRun},
         repair_folds::repair_folds,
@@ -96,10 +96,23 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
         report.polish = Some(counters);
     }
     report.error_rms = Some(pictures.rms());
-    drop((pictures, original));
-    // (4) The better one of images and geometry.
+    drop(pictures);
+    let is_lit = original.reference().is_lit();
+    if limit.is_some() && is_lit && run.options.normals == Normals::Fit {
+        // The limit holds for the normals that the pictures showed.
+        run.options.normals = Normals::Carry;
+    }
     let triangles = run.least();
-    let images = run.finish(stop, Report::Image(report))?;
+    let frame = run.live.frame();
+    let mut images = run.finish(stop, Report::Image(report))?;
+    if let (true, Some(_), Report::Image(report)) = (is_lit, images.normals, &mut images.report) {
+        // The error is that of the mesh as it is returned, with the normals that it got at last.
+        let last = LiveMesh::new(&images.mesh, frame);
+        let pictures = Pictures::new(original.reference(), &last, own.engine);
+        report.error_rms = Some(pictures.rms());
+    }
+    drop(original);
+    // (4) The better one of images and geometry.
     match contest {
         Some(contest) => contest.decide(images, triangles, progress),
         None => Ok(images),
