@@ -74,8 +74,8 @@ impl<'a> Replay<'a> {
         self.undo.len()
     }
 
-    /// Goes to a level: the first with no more than `triangles`, or the last there is. Without polishing and unfolding it
-    /// is what a direct run to `triangles` would have ended with. Time: proportional to the records in between.
+    /// Goes to a level: the first with no more than `triangles`, or the last there is. Without polishing and unfolding, and
+    /// with the same concessions, it is what a direct run to `triangles` would have ended with. Time: proportional to the records in between.
     ///
     /// # Errors
     /// [`Error::Input`] where a record does not fit the mesh.

@@ -10,7 +10,8 @@ use crate::{
 impl History {
     /// Rebuilds the mesh at the level of at most `triangles` triangles from the mesh that the run began with.
     ///
-    /// The same bytes as a run that stopped there, but for what follows the last collapse. O(collapses), and
+    /// The same bytes as a run that stopped there, but for what follows the last collapse and where that run needs fewer
+    /// concessions (`Topology::Auto` settles them for the target). O(collapses), and
     /// O(n log n) for its normals.
     ///
     /// # Errors

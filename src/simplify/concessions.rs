@@ -37,7 +37,9 @@ impl Run<'_> {
             };
         }
         self.options.settled = true;
-        let open = rules.topology == Topology::Auto && rules.concession == Concession::None;
+        // Where an error limits the run, that may end it long before a rule does.
+        let limited = self.options.error_rms.is_some() || self.options.method.is_bounded();
+        let open = rules.topology == Topology::Auto && !limited;
         let Some(target) = self.target.filter(|_| open && self.may_be_stopped()) else {
             return Ok(());
         };

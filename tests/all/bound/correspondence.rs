@@ -11,7 +11,7 @@ use lodmark::{
         view_cell::ViewCell,
     },
     mesh::{Mesh, canonical},
-    simplify::{Options, Target, simplify, view_bounded::ViewBoundedOptions},
+    simplify::{Options, Target, Topology, simplify, view_bounded::ViewBoundedOptions},
 };
 use proptest::prelude::*;
 
@@ -291,6 +291,7 @@ fn run(mesh: &Mesh, triangles: u64, most: f64) -> (Correspondence, Mesh) {
     let cell = ViewCell::half_space(DVec3::new(0.0, 0.0, 1e4), DVec3::NEG_Z).expect("a half-space");
     let own = ViewBoundedOptions::new(cell, (most / 1e4).to_degrees());
     let options = Options::view_bounded(own, Target::Triangles(triangles));
+    let options = options.topology(Topology::Preserve);
     let outcome = simplify(mesh, &options).expect("valid");
     let map = outcome.correspondence().expect("this method keeps account");
     (map.clone(), outcome.mesh)

@@ -8,7 +8,7 @@ use std::{
 use lodmark::{
     mesh::{Mesh, MeshParts, generate},
     num::Precision,
-    simplify::{Options, Target, simplify},
+    simplify::{Options, Target, image::Preset, simplify},
 };
 use proptest::prelude::*;
 
@@ -133,7 +133,8 @@ proptest! {
             Mesh::new(MeshParts { positions, triangles, precision: Precision::F64, ..MeshParts::default() })
                 .expect("finite")
         };
-        for run in [Options::image, Options::memoryless, Options::quadric] {
+        let by_pictures = |target| Options::image(target).preset(Preset::Fast);
+        for run in [by_pictures, Options::memoryless, Options::quadric] {
             let options = run(Target::Triangles(target));
             let [one, other] = [1.0, factor].map(|f| {
                 simplify(&double(f), &options).expect("simplifies").mesh

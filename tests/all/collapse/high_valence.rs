@@ -279,10 +279,10 @@ fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
     let view_bounded = Options::view_bounded(ViewBoundedOptions::new(cell, 0.1), Target::ErrorOnly);
     // Where a hub has few enough faces all of it is looked at: only what more faces add is bounded.
     for (few, many, most, options) in [
-        (0, 2_000, 12.0, tolerance),
-        (0, 600, 12.0, view_bounded),
-        (600, 2_000, 16.0, Options::memoryless(target)),
-        (600, 2_000, 16.0, Options::quadric(target)),
+        (0, 1_000, 12.0, tolerance),
+        (0, 400, 12.0, view_bounded),
+        (600, 1_200, 16.0, Options::memoryless(target)),
+        (600, 1_200, 16.0, Options::quadric(target)),
     ] {
         let before = if few > 0 { looks(few, &options) } else { 0 };
         let more = (looks(many, &options) - before) as f64 / f64::from(many - few);
