@@ -110,7 +110,7 @@
 //! | `simplify/image` | `method`, `pictures`, `slots` |
 //! | `raster/unrender` | `scene_edit`, `layers/mod`, `layers/projected`, `layers/view`, `layers/probe`, `layers/view_delta`, `layers/fragment_lists` |
 //!
-//! Attributes add the two of `collapse/wedge`. Not counted are files that only declare a seam (`collapse/method`,
+//! Attributes add those of `collapse/wedge`. Not counted are files that only declare a seam (`collapse/method`,
 //! `collapse/observer`, `unrender/mod`), the test for sheets that touch in a point (`collapse/pinch`), and what every
 //! picture is drawn by (`raster/draw`).
 //!

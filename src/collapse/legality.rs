@@ -250,6 +250,10 @@ fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, boo
     if keeps_materials && live.takes_last_of_material(gone) {
         return Err(Refusal::LastTriangle);
     }
+    let gone = star.faces.iter().filter(|f| !f.survives).map(|f| f.id);
+    if live.has_its_share(gone) {
+        return Err(Refusal::Share);
+    }
     let (feature, breaks_seam) = features(star, rules, free)?;
     let locked = star.ends.each(|v| live.is_locked(v));
     let anchor = match (locked, feature) {

@@ -46,6 +46,8 @@ refusals! {
     Valence => "valence",
     /// Nothing would be left of the mesh, or of a material.
     LastTriangle => "last-triangle",
+    /// A mesh of the document would have less than its own share of the target.
+    Share => "share",
     /// A common neighbour of both ends forms no face with them: a hole or handle would close.
     Link => "link",
     /// An edge inside joins two boundary (or pinched, or non-manifold) vertices: the surface would be pinched there.

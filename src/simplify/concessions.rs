@@ -74,7 +74,16 @@ impl Run<'_> {
         self.live.may_have_features() || self.live.pieces() as f64 > self.least() as f64 * PIECES
     }
 
-    fn rehearse(&self, live: LiveMesh, rules: Rules, reach: usize) -> Result<(Stop, LiveMesh)> {
+    fn rehearse(
+        &self,
+        mut live: LiveMesh,
+        rules: Rules,
+        mut reach: usize,
+    ) -> Result<(Stop, LiveMesh)> {
+        if self.options.per_mesh {
+            let share = reach as f64 / self.mesh.triangles().len().max(1) as f64;
+            reach = live.set_shares(share).unwrap_or(reach);
+        }
         let mut method = Memoryless::new(&live, MemorylessOptions::default());
         let mut engine = Engine::new(live, rules, self.options.schedule);
         let stop = engine.run(&mut method, reach, &mut (), &Rehearsal(self.progress))?;
@@ -85,6 +94,12 @@ impl Run<'_> {
     /// was settled before.
     pub(super) fn expend_unseen(&mut self) -> Result<()> {
         if self.seen_pieces.is_some() {
+            return Ok(());
+        }
+        let pieces = self.live.pieces();
+        if pieces < 2 {
+            // The only one is seen.
+            self.seen_pieces = Some(pieces);
             return Ok(());
         }
         let mesh = self.live.to_mesh()?;

@@ -42,6 +42,9 @@ pub struct Options {
     pub error_rms: Option<f64>,
     /// The rules that collapses obey.
     pub rules: Rules,
+    /// Every mesh of a document gets the share of the target that it has of the triangles.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub per_mesh: bool,
     /// Curves of the input whose vertices stay where they are.
     #[serde(default, skip_serializing_if = "Locks::is_none")]
     pub locks: Locks,
@@ -77,6 +80,7 @@ impl Options {
         let own = method.as_run();
         Self {
             rules: own.rules(),
+            per_mesh: false,
             locks: Locks::default(),
             schedule: own.schedule(),
             unfold: own.only_orders(),
@@ -140,6 +144,14 @@ impl Options {
     #[must_use]
     pub fn topology(mut self, topology: Topology) -> Self {
         self.rules.topology = topology;
+        self
+    }
+
+    /// Gives every mesh of a document the share of the target that it has of the triangles, instead of dividing the target
+    /// by what is seen. Nothing changes for other files, or where only an error limits the run.
+    #[must_use]
+    pub fn per_mesh(mut self) -> Self {
+        self.per_mesh = true;
         self
     }
 

@@ -107,13 +107,19 @@ impl<'a> Run<'a> {
         } else {
             live.lock(options.locks)
         };
+        let count = mesh.triangles().len();
+        let mut target = options.target.of(count)?;
+        if let Some(triangles) = target.filter(|_| options.per_mesh) {
+            let share = triangles as f64 / count.max(1) as f64;
+            target = live.set_shares(share).or(target);
+        }
         Ok(Self {
             mesh,
             live,
             locked,
             seen_pieces: None,
             options: options.clone().normals(options.normals.of(mesh)),
-            target: options.target.of(mesh.triangles().len())?,
+            target,
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
             progress,

@@ -80,6 +80,9 @@ pub(super) struct SimplifyArgs {
     /// Let whole pieces vanish though they are seen, where the target needs it
     #[arg(long)]
     drop_pieces: bool,
+    /// Give every mesh of a glTF file the share of the target that it has of the triangles
+    #[arg(help_heading = "Target", long)]
+    per_mesh: bool,
     /// Keep the vertices of open borders where they are
     #[arg(long)]
     lock_border: bool,
@@ -186,6 +189,7 @@ impl SimplifyArgs {
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
         options.rules.drop_pieces = self.drop_pieces;
+        options.per_mesh = self.per_mesh;
         options.locks.border = self.lock_border;
         options.locks.seams = self.lock_seams;
         options.locks.materials = self.lock_materials;

@@ -102,20 +102,20 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Stop> {
         let start = self.live.triangle_count();
-        if start <= triangles {
+        if self.live.is_small_enough(triangles) {
             return Ok(Stop::TargetReached);
         }
         self.plan = method.plan();
         if self.cost_limit.is_some() {
             self.plan.evaluations_per_task = usize::MAX;
         }
-        let total = (start - triangles) as u64;
+        let total = start.saturating_sub(triangles) as u64;
         let mut queue = match self.queue.take() {
             Some(queue) => queue,
             None => self.first_queue(method, progress)?,
         };
         let stop = loop {
-            if self.live.triangle_count() <= triangles {
+            if self.live.is_small_enough(triangles) {
                 break Stop::TargetReached;
             }
             if progress.interrupted() {

@@ -5,10 +5,11 @@
 //! edge counts its faces.
 
 mod incidence;
+mod shares;
 
 use glam::DVec3;
 
-use self::incidence::IncidenceLists;
+use self::{incidence::IncidenceLists, shares::Shares};
 use super::{
     PatchFace,
     pinch::Forest,
@@ -62,6 +63,8 @@ pub struct LiveMesh {
     pub(super) materials: Materials,
     /// Number of triangles that are left of every material.
     of_material: Vec<u32>,
+    /// The targets of the meshes of a document, where each has its own.
+    shares: Shares,
     may_have_features: bool,
 }
 
@@ -424,6 +427,7 @@ impl LiveMesh {
         {
             *count += 1;
         }
+        self.shares.count(self.materials.of(id as usize), true);
     }
 
     /// Gives a face other corners.
@@ -447,6 +451,7 @@ impl LiveMesh {
         {
             *count -= 1;
         }
+        self.shares.count(self.materials.of(id as usize), false);
     }
 
     pub(super) fn add_side(&mut self, a: u32, b: u32, created: &mut Vec<u32>) {

@@ -1,9 +1,10 @@
 //! Writes PLY, text and binary.
 //!
 //! Attributes are per vertex; where texture coordinates differ between the corners of a vertex they become the face
-//! property `texcoord`, as MeshLab writes it. Colours are `uchar` where every value is a multiple of 1/255.
+//! property `texcoord`, as MeshLab writes it, and where normals or colours do, the vertex is stored once for each of their
+//! values, which welding undoes. Colours are `uchar` where every value is a multiple of 1/255.
 
-use std::fmt::Write;
+use std::{collections::BTreeMap, fmt::Write};
 
 use crate::{
     io::{decimal, per_vertex, per_vertex::PerVertex},
@@ -30,14 +31,14 @@ pub(in crate::rooms::io) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, V
     };
     let attributes = mesh.attributes();
     let mut absent = 0_usize;
-    for (v, p) in mesh.positions().iter().enumerate() {
-        for x in p.to_array() {
+    for &(v, wedge) in &plan.vertices {
+        for x in mesh.positions()[v as usize].to_array() {
             sink.real(x);
         }
         for &channel in &plan.vertex_channels {
             // A vertex without triangles has no attributes that anyone could miss.
             let zeros = [0.0; 4];
-            let values = match plan.per_vertex.wedges[v] {
+            let values = match wedge {
                 Some(wedge) => attributes.value(channel, wedge),
                 None => &zeros[..channel.kind.width()],
             };
@@ -52,7 +53,7 @@ pub(in crate::rooms::io) fn encode(mesh: &Mesh, numbers: Numbers) -> (Vec<u8>, V
         }
         sink.end_of_line();
     }
-    for (t, corners) in mesh.triangles().iter().enumerate() {
+    for (t, corners) in plan.triangles.iter().enumerate() {
         sink.byte(3);
         for &v in corners {
             sink.index(v);
@@ -85,6 +86,10 @@ const fn is_colour(kind: ChannelKind) -> bool {
 /// Where every channel goes.
 struct Plan {
     per_vertex: PerVertex,
+    /// The vertices as they are stored: the place of each, and the corner that it has its values from.
+    vertices: Vec<(u32, Option<u32>)>,
+    /// The triangles, in stored vertices.
+    triangles: Vec<[u32; 3]>,
     vertex_channels: Vec<Channel>,
     corner_uv: Option<Channel>,
     byte_colours: bool,
@@ -118,8 +123,11 @@ impl Plan {
                         .all(|&x| is_byte(x, mesh.precision()))
                 })
             });
+        let (vertices, triangles) = stored(mesh, &per_vertex, &vertex_channels);
         Self {
             per_vertex,
+            vertices,
+            triangles,
             vertex_channels,
             corner_uv,
             byte_colours,
@@ -138,7 +146,7 @@ impl Plan {
         };
         let mut header = format!(
             "ply\nformat {storage} 1.0\ncomment written by lodmark\nelement vertex {}\n",
-            mesh.positions().len()
+            self.vertices.len()
         );
         let mut property = |kind: &str, names: &[&str]| {
             for name in names {
@@ -183,7 +191,7 @@ impl Plan {
                     if differing > 0 {
                         notes.push(format!(
                             "PLY keeps one value per vertex: {name} differ between corners at {differing} vertices, \
-                             the first is kept there"
+                             which are stored once for each value"
                         ));
                     }
                 }
@@ -192,6 +200,44 @@ impl Plan {
         }
         notes
     }
+}
+
+/// The stored vertices, and the triangles in them: those of the mesh, then one for each further value of the channels at a
+/// vertex. O(corners log corners).
+fn stored(
+    mesh: &Mesh,
+    per_vertex: &PerVertex,
+    channels: &[Channel],
+) -> (Vec<(u32, Option<u32>)>, Vec<[u32; 3]>) {
+    let mut vertices: Vec<_> = (0..).zip(per_vertex.wedges.iter().copied()).collect();
+    let mut triangles = mesh.triangles().to_vec();
+    let differing = channels.iter().copied();
+    let differing: Vec<_> = differing
+        .filter(|c| per_vertex.differing(c.kind) > 0)
+        .collect();
+    if differing.is_empty() {
+        return (vertices, triangles);
+    }
+    let attributes = mesh.attributes();
+    let key = |wedge: u32| -> Vec<u64> {
+        let values = differing.iter().flat_map(|&c| attributes.value(c, wedge));
+        values.map(|x| x.to_bits()).collect()
+    };
+    let mut further = BTreeMap::new();
+    for (corners, wedges) in triangles.iter_mut().zip(attributes.corners()) {
+        for (corner, &wedge) in corners.iter_mut().zip(wedges) {
+            let (v, first) = vertices[*corner as usize];
+            let wanted = key(wedge);
+            if first.is_some_and(|first| first == wedge || key(first) == wanted) {
+                continue;
+            }
+            *corner = *further.entry((v, wanted)).or_insert_with(|| {
+                vertices.push((v, Some(wedge)));
+                vertices.len() as u32 - 1
+            });
+        }
+    }
+    (vertices, triangles)
 }
 
 /// Whether `x` is what a reader makes of a byte.

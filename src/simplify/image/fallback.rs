@@ -118,6 +118,7 @@ impl Contest<'_> {
         options.rules.concession = self.options.rules.concession;
         options.rules.drop_pieces = self.options.rules.drop_pieces;
         options.locks = self.options.locks;
+        options.per_mesh = self.options.per_mesh;
         options.settled = true;
         options
     }

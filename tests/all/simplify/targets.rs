@@ -1,9 +1,11 @@
 //! Targets are met by default: what gives way, in which order, and no more than needed.
 
-use glam::DVec3;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
 use lodmark::{
     collapse::Concession,
-    mesh::{Attributes, ChannelKind, Mesh, MeshParts, canonical, generate, weld},
+    mesh::{Asset, AssetPart, Attributes, ChannelKind, Mesh, MeshParts, canonical, generate, weld},
     simplify::{self, MethodOptions, Options, Outcome, Replay, Stop, Target, Topology},
 };
 
@@ -255,4 +257,65 @@ fn a_run_by_pictures_keeps_seams_only_far_from_where_they_would_stop_it() {
     assert!(!concessions(&by_pictures(floor * 5 / 4)).is_empty());
     let generous = by_pictures(mesh.triangles().len() as u64 * 19 / 20);
     assert!(generous.mesh.triangles().len() as u64 <= mesh.triangles().len() as u64 * 19 / 20);
+}
+
+/// A ball and a plane side by side, as the two meshes of a document.
+fn ball_and_plane() -> Mesh {
+    let mut parts = generate::icosphere(3).into_parts();
+    let plane = generate::grid(20, 20, generate::Height::Flat).into_parts();
+    let ball = parts.triangles.len();
+    let first = parts.positions.len() as u32;
+    let aside = |p: DVec3| p + DVec3::new(4.0, 0.0, 0.0);
+    parts
+        .positions
+        .extend(plane.positions.into_iter().map(aside));
+    let moved = plane.triangles.into_iter().map(|t| t.map(|v| v + first));
+    parts.triangles.extend(moved);
+    let of = |t: usize| u32::from(t >= ball);
+    parts.materials.of_triangle = (0..parts.triangles.len()).map(of).collect();
+    parts.materials.names = vec!["ball".into(), "plane".into()];
+    let part = |mesh: usize, name: &str| AssetPart {
+        name: name.into(),
+        mesh,
+        primitive: 0,
+        placement: DAffine3::IDENTITY,
+        instances: 1,
+    };
+    parts.materials.asset = Some(Arc::new(Asset {
+        parts: vec![part(0, "ball"), part(1, "plane")],
+        ..Asset::default()
+    }));
+    canonical(&Mesh::new(parts).expect("valid")).mesh
+}
+
+#[test]
+fn every_mesh_of_a_document_gets_its_own_share_where_that_is_asked_for() {
+    let mesh = ball_and_plane();
+    let counts = |mesh: &Mesh| {
+        let name = |t: usize| mesh.materials().names[mesh.materials().of(t) as usize].as_str();
+        let all = 0..mesh.triangles().len();
+        ["ball", "plane"].map(|part| all.clone().filter(|&t| name(t) == part).count())
+    };
+    let [ball, plane] = counts(&mesh);
+    let quarter = |count: usize| count.div_ceil(4);
+    for options in [
+        Options::memoryless(Target::Ratio(0.25)),
+        Options::quadric(Target::Ratio(0.25)),
+        Options::image(Target::Ratio(0.25)).preset(simplify::image::Preset::Fast),
+    ] {
+        let divided = simplify::simplify(&mesh, &options).expect("runs");
+        assert!(
+            counts(&divided.mesh)[1] < quarter(plane) / 2,
+            "a plane needs few"
+        );
+        let own = simplify::simplify(&mesh, &options.per_mesh()).expect("runs");
+        assert_eq!(own.stop, Stop::TargetReached);
+        for (count, asked) in counts(&own.mesh)
+            .into_iter()
+            .zip([ball, plane].map(quarter))
+        {
+            assert!((asked - 2..=asked).contains(&count), "{count} of {asked}");
+        }
+        assert!(concessions(&own).is_empty());
+    }
 }
