@@ -204,6 +204,15 @@ fn formats() -> impl Strategy<Value = Format> {
     prop::sample::select(Format::ALL.to_vec())
 }
 
+/// The places of the corners of every triangle.
+fn corners(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
+    let triangles = 0..mesh.triangles().len();
+    let places = triangles.map(|t| mesh.corners(t));
+    places
+        .map(|points| points.map(|p| p.to_array().map(f64::to_bits)))
+        .collect()
+}
+
 proptest! {
     #![proptest_config(crate::support::cases(2000))]
 
@@ -248,7 +257,8 @@ proptest! {
             for out in [Encoding::Obj, Encoding::PlyBigEndian] {
                 let (written, _) = io::encode(&mesh, out).expect("writes");
                 let again = io::read_bytes(out.format(), &written, "-").expect("reads").mesh;
-                prop_assert_eq!(again.triangles(), mesh.triangles());
+                // A PLY may store a vertex several times.
+                prop_assert_eq!(corners(&again), corners(&mesh));
             }
         }
     }
