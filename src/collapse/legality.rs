@@ -245,15 +245,7 @@ fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, boo
     if !free {
         topology(star)?;
     }
-    let gone = star.faces.iter().filter(|f| !f.survives).map(|f| f.id);
-    let keeps_materials = rules.topology != Topology::Free && !rules.drop_pieces;
-    if keeps_materials && live.takes_last_of_material(gone) {
-        return Err(Refusal::LastTriangle);
-    }
-    let gone = star.faces.iter().filter(|f| !f.survives).map(|f| f.id);
-    if live.has_its_share(gone) {
-        return Err(Refusal::Share);
-    }
+    counts(live, star, rules)?;
     let (feature, breaks_seam) = features(star, rules, free)?;
     let locked = star.ends.each(|v| live.is_locked(v));
     let anchor = match (locked, feature) {
@@ -263,6 +255,22 @@ fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, boo
         _ => return Err(Refusal::Locked),
     };
     Ok((anchor, breaks_seam))
+}
+
+/// Tests the rules that depend on faces elsewhere: no material vanishes, no mesh of a document gets less than its share.
+///
+/// # Errors
+/// [`Refusal::LastTriangle`] or [`Refusal::Share`].
+pub(super) fn counts(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(), Refusal> {
+    let gone = star.faces.iter().filter(|f| !f.survives).map(|f| f.id);
+    let keeps_materials = rules.topology != Topology::Free && !rules.drop_pieces;
+    if keeps_materials && live.takes_last_of_material(gone.clone()) {
+        return Err(Refusal::LastTriangle);
+    }
+    if live.has_its_share(gone) {
+        return Err(Refusal::Share);
+    }
+    Ok(())
 }
 
 fn topology(star: &EdgeStar) -> Result<(), Refusal> {

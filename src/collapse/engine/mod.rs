@@ -10,7 +10,7 @@ use self::queue::Queue;
 pub use self::queue::{Heap, Key, Schedule};
 use super::{
     Changes, Concession, Counters, EdgeStar, Evaluation, LiveMesh, Method, MethodScratch, Observer,
-    Patch, Plan, Proposal, Refusal, Review, Rules, Site, Stop,
+    Patch, Plan, Proposal, Refusal, Review, Rules, Site, Stop, legality,
 };
 use crate::{Error, Progress, Result, parallel};
 
@@ -134,6 +134,11 @@ impl Engine {
                     }
                     if self.gathered != Some(id) {
                         self.star.gather(&self.live, id);
+                    }
+                    // What was legal may not be any more for what happened elsewhere.
+                    if let Err(refusal) = legality::counts(&self.live, &self.star, self.rules) {
+                        self.note(&mut queue, id, Err(refusal), Evaluation::Exact);
+                        continue;
                     }
                     let position = proposal.position.position();
                     self.star.patch(&self.live, position, &mut self.patch);

@@ -1,7 +1,5 @@
 //! Texture coordinates of new vertices: affine maps, orientation, mirrored charts, and charts that are not left.
 
-use std::collections::BTreeSet;
-
 use glam::DVec3;
 use lodmark::{
     mesh::{Attributes, ChannelKind, Mesh, canonical, generate, weld},
@@ -57,19 +55,6 @@ fn faces(mesh: &Mesh) -> Vec<[(DVec3, [f64; 2]); 3]> {
 fn texture_area(face: &[(DVec3, [f64; 2]); 3]) -> f64 {
     let [a, b, c] = face.map(|(_, st)| st);
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// Vertices at an edge with one triangle.
-fn rim(mesh: &Mesh) -> BTreeSet<[u64; 3]> {
-    let mut sides = std::collections::BTreeMap::new();
-    for &[a, b, c] in mesh.triangles() {
-        for [x, y] in [[a, b], [b, c], [c, a]] {
-            *sides.entry([x.min(y), x.max(y)]).or_insert(0) += 1;
-        }
-    }
-    let open = sides.into_iter().filter(|&(_, count)| count == 1);
-    let key = |v: u32| mesh.positions()[v as usize].to_array().map(f64::to_bits);
-    open.flat_map(|(edge, _)| edge.map(key)).collect()
 }
 
 fn simplified(mesh: &Mesh, triangles: u64, topology: Topology) -> Mesh {
@@ -129,21 +114,25 @@ fn no_triangle_turns_over_in_the_texture() {
 
 #[test]
 fn the_two_sides_of_a_mirrored_texture_keep_their_own_maps() {
-    let mesh = sheet(24, |p, _| [p.x.abs(), p.y]);
+    let flat = generate::grid(24, 24, generate::Height::Flat);
+    let mesh = textured(flat, |p, _| [p.x.abs(), p.y]);
     let after = simplified(&mesh, 140, Topology::Preserve);
-    let rim = rim(&after);
+    let mut sides = [0, 0];
     for face in faces(&after) {
+        // The sign says which side a triangle shows.
         let area = texture_area(&face);
-        let middle = (face[0].0.x + face[1].0.x + face[2].0.x) / 3.0;
-        assert!(area * middle >= 0.0, "{face:?} shows the other side");
+        if area == 0.0 {
+            continue;
+        }
+        sides[usize::from(area < 0.0)] += 1;
         for (p, st) in face {
-            if !rim.contains(&p.to_array().map(f64::to_bits)) {
-                // A vertex beyond the line has the nearest value of its own side.
-                let own = (p.x * middle.signum()).max(0.0);
-                assert!((st[0] - own).abs() < 1e-2, "{st:?} at {p}");
-            }
+            // A vertex beyond the line has the nearest value of its own side, which bends the map of its faces a
+            // little; values of both sides together would be off by half a cell, 0.04, and more.
+            let own = (p.x * area.signum()).max(0.0);
+            assert!((st[0] - own).abs() < 0.03, "{st:?} at {p}");
         }
     }
+    assert!(sides.iter().all(|&count| count > 30), "{sides:?}");
 }
 
 #[test]
