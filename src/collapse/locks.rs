@@ -19,7 +19,6 @@ pub struct Locks {
 
 impl Locks {
     /// True where nothing is locked.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()

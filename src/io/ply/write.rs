@@ -83,11 +83,14 @@ const fn is_colour(kind: ChannelKind) -> bool {
     matches!(kind, ChannelKind::Color | ChannelKind::ColorAlpha)
 }
 
+/// The place of a stored vertex among those of the mesh, and the corner that it has its values from.
+type StoredVertex = (u32, Option<u32>);
+
 /// Where every channel goes.
 struct Plan {
     per_vertex: PerVertex,
-    /// The vertices as they are stored: the place of each, and the corner that it has its values from.
-    vertices: Vec<(u32, Option<u32>)>,
+    /// The vertices as they are stored.
+    vertices: Vec<StoredVertex>,
     /// The triangles, in stored vertices.
     triangles: Vec<[u32; 3]>,
     vertex_channels: Vec<Channel>,
@@ -208,7 +211,7 @@ fn stored(
     mesh: &Mesh,
     per_vertex: &PerVertex,
     channels: &[Channel],
-) -> (Vec<(u32, Option<u32>)>, Vec<[u32; 3]>) {
+) -> (Vec<StoredVertex>, Vec<[u32; 3]>) {
     let mut vertices: Vec<_> = (0..).zip(per_vertex.wedges.iter().copied()).collect();
     let mut triangles = mesh.triangles().to_vec();
     let differing = channels.iter().copied();

@@ -1,6 +1,6 @@
 //! A reader and a renderer of others see in our files what we see.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use lodmark::{
     Silent, compare_with, io,
@@ -15,7 +15,7 @@ use crate::support::{
     say,
 };
 
-fn read(path: &PathBuf) -> Mesh {
+fn read(path: &Path) -> Mesh {
     let stored = io::read(path).expect("a good file").mesh;
     canonical(&weld(stored).mesh).mesh
 }
@@ -45,7 +45,7 @@ fn a_loader_that_is_not_ours_agrees_on_which_result_is_nearer() {
             files.extend(peers.iter().filter_map(peer));
         }
         let theirs = foreign_pictures(packages, &original, &files);
-        let candidates: Vec<Mesh> = files.iter().map(read).collect();
+        let candidates: Vec<Mesh> = files.iter().map(|file| read(file)).collect();
         let mut options = CompareOptions::default().pictures(256, 1);
         options.distance_samples = None;
         (options.silhouettes, options.folds) = (false, false);
