@@ -19,9 +19,8 @@ use crate::num::Each;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Topology {
-    /// As preserved where the target can be met so. Only as far as it needs, seams lose their course, from the start of a
-    /// run and where least is lost; then, where no edge may collapse any more, pieces vanish that no view sees, and holes
-    /// close and parts merge, in this order.
+    /// As preserved where the target can be met so. Else, settled before the run, seams lose their course where least is
+    /// lost, pieces vanish that no view sees, holes close and parts merge, and faces turn over in the texture, in this order.
     #[default]
     Auto,
     /// Holes, handles, components, boundaries, non-manifold curves and the course of seams stay as they are.
