@@ -279,7 +279,7 @@ fn a_hub_is_not_looked_at_once_for_every_face_and_collapse() {
     let view_bounded = Options::view_bounded(ViewBoundedOptions::new(cell, 0.1), Target::ErrorOnly);
     // Where a hub has few enough faces all of it is looked at: only what more faces add is bounded.
     for (few, many, most, options) in [
-        (0, 1_000, 12.0, tolerance),
+        (0, 2_000, 12.0, tolerance),
         (0, 400, 12.0, view_bounded),
         (600, 1_200, 16.0, Options::memoryless(target)),
         (600, 1_200, 16.0, Options::quadric(target)),
