@@ -5,6 +5,7 @@ use lodmark::{
     Mesh, Options, Target,
     chain::{Chain, Levels, Screen, chain},
     mesh::generate,
+    num::math::{sqrt, tan},
     view::Sphere,
 };
 
@@ -22,7 +23,7 @@ struct Picture {
 
 /// The 24 directions that evaluation looks from.
 fn directions() -> Vec<DVec3> {
-    let far = 1.0 + 2.0_f64.sqrt();
+    let far = 1.0 + sqrt(2.0);
     let mut found = Vec::new();
     for bits in 0..8 {
         let sign = |axis: u32| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -107,7 +108,7 @@ fn displacement(a: &Picture, b: &Picture, most: f64) -> f64 {
             for u in (x - reach).max(0)..(x + reach + 1).min(width as i64) {
                 if b.covered[v as usize * width + u as usize] {
                     let squared = ((u - x).pow(2) + (v - y).pow(2)) as f64;
-                    nearest = nearest.min(squared.sqrt());
+                    nearest = nearest.min(sqrt(squared));
                 }
             }
         }
@@ -120,7 +121,7 @@ fn displacement(a: &Picture, b: &Picture, most: f64) -> f64 {
 /// sides.
 fn seen(original: &Mesh, level: &Mesh, distance: f64, height: u32) -> [f64; 2] {
     let sphere = Sphere::of_mesh(original).expect("triangles");
-    let pixel = 2.0 * 30.0_f64.to_radians().tan() / f64::from(height);
+    let pixel = 2.0 * tan(30.0_f64.to_radians()) / f64::from(height);
     let side = (2.4 * sphere.radius / (distance * pixel)).ceil() as usize + 6;
     let (mut largest, mut rms) = (0.0_f64, 0.0_f64);
     for direction in directions() {
@@ -133,9 +134,9 @@ fn seen(original: &Mesh, level: &Mesh, distance: f64, height: u32) -> [f64; 2] {
             .luma
             .iter()
             .zip(&b.luma)
-            .map(|(a, b)| (a - b).powi(2))
+            .map(|(a, b)| (a - b) * (a - b))
             .sum();
-        rms = rms.max(sum.sqrt() / f64::from(height));
+        rms = rms.max(sqrt(sum) / f64::from(height));
     }
     [largest, rms]
 }
@@ -193,10 +194,10 @@ fn shares_of_the_screen_follow_from_the_distance_as_engines_have_it() {
     for level in &found.levels[1..] {
         let switch = level.report.switch_distance.expect("shown");
         let shares = level.report.shares.expect("seen");
-        let height = 2.0 * found.radius / (2.0 * switch * (1.0 / 3.0_f64.sqrt()));
+        let height = 2.0 * found.radius / (2.0 * switch * (1.0 / sqrt(3.0)));
         assert!((shares.screen_height / height - 1.0).abs() < 1e-12);
         assert!((shares.screen_diameter / height - 1.0).abs() < 1e-12);
-        let disc = std::f64::consts::PI * (0.5 * height).powi(2) / (16.0 / 9.0);
+        let disc = std::f64::consts::PI * (0.25 * height * height) / (16.0 / 9.0);
         assert!((shares.coverage / disc - 1.0).abs() < 1e-12);
     }
     let first = &found.levels[0].report;
@@ -234,7 +235,7 @@ fn a_proved_distance_is_no_nearer_than_what_silhouettes_are_seen_to_need() {
         nearest.fold(f64::INFINITY, f64::min)
     });
     let farthest = farthest.fold(0.0, f64::max);
-    let pixel = 2.0 * 30.0_f64.to_radians().tan() / f64::from(HEIGHT);
+    let pixel = 2.0 * tan(30.0_f64.to_radians()) / f64::from(HEIGHT);
     assert!(farthest / (proved - found.radius) <= pixel);
     assert!(found.levels[0].report.certified_distance.is_none());
 }

@@ -146,7 +146,7 @@ fn a_window_from_twice_the_radius_is_the_middle_of_the_whole_picture() {
     let whole = ViewSet::around(&s, &directions, 300, 300, projection).expect("views");
     let window = Window {
         side: 100,
-        pixel: 2.0 / 3.0_f64.sqrt() / 300.0,
+        pixel: 2.0 / sqrt(3.0) / 300.0,
         samples: 2,
     };
     let part = ViewSet::from_distance(&s, &directions, 1.5, window).expect("views");
