@@ -61,7 +61,7 @@
 //!                            |             +----> visibility ---+     pictures
 //!                            |             +----> validate (why a pixel differs) ------------------------> cli
 //!                            +-> bound  (view cells, envelopes)-+
-//!                            +-> collapse ----------------------+-> simplify -> selfcheck, front -> cli
+//!                            +-> collapse ----------------------+-> simplify -> chain -> selfcheck, front -> cli
 //! ```
 //!
 //! | room | owns |
@@ -80,6 +80,7 @@
 //! | `bound` | guarantees: view cells, valid regions of points and faces, tolerance volumes, an independent verifier |
 //! | `collapse` | one engine for every method: live mesh, queue, legality, wedges, history and replay; no word about pictures |
 //! | `simplify` | one folder a method: options, run, report; targets and outcome |
+//! | `chain` | levels of detail: their sizes, runs and measured switch distances; their files and the manifest |
 //! | `selfcheck` | goldens: what this version computes for a fixed set of small cases |
 //! | `front` | the functions of this page that no room has in that form |
 //! | `cli` | the command, one file or folder a subcommand |
@@ -138,6 +139,7 @@ mod progress;
 #[path = ""]
 mod rooms {
     pub mod bound;
+    pub mod chain;
     #[cfg(feature = "cli")]
     pub mod cli;
     pub mod collapse;
@@ -159,6 +161,7 @@ pub use rooms::*;
 #[cfg(not(feature = "internals"))]
 use rooms::*;
 
+pub use chain::{chain, chain_with};
 pub use error::{Error, Result};
 pub use front::{
     compare, compare_with, options, render, render_with, reports, verify, views, visibility,

@@ -21,6 +21,7 @@ mod input;
 
 mod inspect;
 mod levels;
+mod lod;
 mod render;
 mod replay;
 mod selfcheck;
@@ -83,18 +84,16 @@ enum Command {
     Check(check::CheckArgs),
     CheckRays(check_rays::CheckRaysArgs),
     Inspect(inspect::InspectArgs),
+    Lod(lod::LodArgs),
     Levels(levels::LevelsArgs),
     Billboards(billboards::BillboardsArgs),
     Golden(golden::GoldenArgs),
     Selfcheck(selfcheck::SelfcheckArgs),
     Demo(demo::DemoArgs),
-    /// Verbs of the plan that this version does not have yet.
+    /// Anything else.
     #[command(external_subcommand)]
     Other(Vec<String>),
 }
-
-/// Commands that the documentation names and this version does not have.
-const NOT_BUILT: &[&str] = &["lod"];
 
 /// The answer of a command that succeeded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,6 +171,7 @@ fn run(arguments: Arguments, matches: &ArgMatches) -> Result<Verdict> {
         Command::Check(options) => check::run(&options, common, &terminal),
         Command::CheckRays(options) => check_rays::run(&options, common, &terminal),
         Command::Inspect(options) => inspect::run(&options, common, &terminal),
+        Command::Lod(options) => lod::run(&options, common, &terminal),
         Command::Levels(options) => levels::run(&options, common, &terminal),
         Command::Billboards(options) => billboards::run(&options, common, &terminal),
         Command::Golden(options) => golden::run(&options, common, &terminal),
@@ -179,13 +179,8 @@ fn run(arguments: Arguments, matches: &ArgMatches) -> Result<Verdict> {
         Command::Selfcheck(options) => selfcheck::run(&options, common, &terminal),
         Command::Other(words) => {
             let name = words.first().cloned().unwrap_or_default();
-            Err(if NOT_BUILT.contains(&name.as_str()) {
-                let told = format!("`{name}` is not built yet in this version of lodmark");
-                Error::Unsupported(told)
-            } else {
-                let told = format!("there is no command `{name}`; see `lodmark --help`");
-                Error::Usage(told)
-            })
+            let told = format!("there is no command `{name}`; see `lodmark --help`");
+            Err(Error::Usage(told))
         }
     };
     terminal.finish();

@@ -1,4 +1,4 @@
-//! SHA-256 of pixels, for goldens: of raw arrays with their size, never of encoded files.
+//! SHA-256 of pixels, for goldens: of raw arrays with their size, never of encoded files; and of any bytes.
 //!
 //! The hash covers three little-endian 32-bit numbers, width, height and bytes per pixel, and then the pixels row by
 //! row from the top left, every value little-endian. In Python with a numpy array `a` of shape (height, width) or
@@ -39,6 +39,15 @@ impl Raw for [u8; 3] {
     }
 }
 
+/// SHA-256 of the bytes of a file as 64 lower-case hexadecimal digits: what `sha256sum` prints.
+pub fn bytes_sha256(bytes: &[u8]) -> String {
+    digits(&Sha256::digest(bytes))
+}
+
+fn digits(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// SHA-256 of a plane as 64 lower-case hexadecimal digits.
 pub fn plane_sha256<T: Raw>(plane: &Grid<T>) -> String {
     let mut hash = Sha256::new();
@@ -53,8 +62,5 @@ pub fn plane_sha256<T: Raw>(plane: &Grid<T>) -> String {
         }
         hash.update(&bytes);
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    digits(&hash.finalize())
 }

@@ -16,6 +16,7 @@ pub use visibility::{visibility, visibility_with};
 /// Options of everything, each made by a constructor or by default and changed step by step.
 pub mod options {
     pub use super::render::RenderOptions;
+    pub use crate::chain::{Levels, Screen};
     pub use crate::metric::report::CompareOptions;
     pub use crate::simplify::{
         MethodOptions, Normals, Rules, Schedule, Topology,
@@ -33,6 +34,7 @@ pub mod options {
 pub mod reports {
     pub use super::render::{Rendering, ViewImages};
     pub use crate::{
+        chain::{Chain, Level, LevelReport, ScreenShares},
         collapse::{Counters, Reason, Refusals},
         metric::{
             appearance::WorstView,

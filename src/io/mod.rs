@@ -21,6 +21,7 @@ mod words;
 mod write;
 
 pub use format::{Encoding, Format};
+pub use gltf::{SharedImages, share_images};
 pub use read::{Loaded, read, read_bytes};
 pub use summary::Summary;
 pub use write::{encode, writable_format, write};

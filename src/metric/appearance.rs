@@ -156,7 +156,9 @@ fn errors(
         };
         candidates.iter().map(errors).collect()
     };
-    let (count, group) = (views.views.len(), at_a_time(reference, candidates, views));
+    let scenes = std::iter::once(reference).chain(candidates);
+    let largest = scenes.map(Scene::triangle_count).max().unwrap_or(0);
+    let (count, group) = (views.views.len(), at_a_time(largest, views));
     let mut found = Vec::with_capacity(count);
     for (i, part) in views.views.chunks(group).enumerate() {
         progress.step("compare pictures", (i * group) as u64, count as u64)?;
@@ -206,11 +208,10 @@ fn with(view: &View, interpolation: Interpolation) -> View {
     view
 }
 
-/// Views that may be drawn at the same time. It decides memory and speed, never a result.
-fn at_a_time(reference: &Scene, candidates: &[Scene], views: &ViewSet) -> usize {
+/// Views that may be drawn at the same time, of scenes with at most `largest` triangles. It decides memory and speed,
+/// never a result.
+pub fn at_a_time(largest: usize, views: &ViewSet) -> usize {
     let threads = parallel::threads();
-    let scenes = std::iter::once(reference).chain(candidates);
-    let largest = scenes.map(Scene::triangle_count).max().unwrap_or(0);
     let parts = threads.min(largest / PART + 1) as u64;
     let samples = u64::from(views.width * views.samples) * u64::from(views.height * views.samples);
     let fitting = MEMORY / (parts * samples * SAMPLE_BYTES).max(1);

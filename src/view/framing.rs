@@ -82,7 +82,8 @@ impl View {
         [near, far]: [f64; 2],
         [width, height]: [u32; 2],
     ) -> Option<Self> {
-        Self::perspective_along(eye, eye - target, up, [near, far], [width, height])
+        let factors = full_view([width, height]);
+        Self::perspective_along(eye, eye - target, up, [near, far], factors)
     }
 
     /// An orthographic view along `-axis` onto `sphere`, which touches the shorter side of the image; `near` and `far`
@@ -130,27 +131,25 @@ impl View {
                 let radius = usable_radius(sphere);
                 let eye = sphere.center + back * (2.0 * radius);
                 // The axis is `back` itself: taking it from rounded positions would lose bits far from the origin.
-                Self::perspective_along(eye, back, up, [radius, 3.0 * radius], size)
+                Self::perspective_along(eye, back, up, [radius, 3.0 * radius], full_view(size))
             }
             Projection::Orthographic => Self::orthographic(sphere, back, up, size),
         }
     }
 
-    /// [`View::perspective`] with the view axis instead of a target.
-    fn perspective_along(
+    /// [`View::perspective`] with the view axis instead of a target, and the cotangents of half the fields of view along
+    /// the rows and the columns of the image.
+    pub(super) fn perspective_along(
         eye: DVec3,
         back: DVec3,
         up: DVec3,
         [near, far]: [f64; 2],
-        [width, height]: [u32; 2],
+        [x, y]: [f64; 2],
     ) -> Option<Self> {
         if !(near > 0.0 && near < far && far.is_finite()) {
             return None;
         }
         let basis = Basis::new(back, up)?;
-        let shorter = f64::from(width.min(height));
-        let x = COTANGENT_OF_30_DEGREES * (shorter / f64::from(width));
-        let y = COTANGENT_OF_30_DEGREES * (shorter / f64::from(height));
         let unit = Frame::for_size(near).exponent;
         let row = |direction: DVec3, factor: f64, offset: f64| {
             let r = direction * factor;
@@ -221,8 +220,14 @@ impl View {
     }
 }
 
+/// The cotangents of half the fields of view along the rows and the columns of an image: 60 degrees along its shorter side.
+fn full_view([width, height]: [u32; 2]) -> [f64; 2] {
+    let shorter = f64::from(width.min(height));
+    [width, height].each(|side| COTANGENT_OF_30_DEGREES * (shorter / f64::from(side)))
+}
+
 /// The up-vector of view `index` of `count` along the unit vector `back`, by the rule in the file's first lines.
-fn rolled_up(back: DVec3, index: usize, count: usize) -> Option<DVec3> {
+pub(super) fn rolled_up(back: DVec3, index: usize, count: usize) -> Option<DVec3> {
     let steep = back.y.abs() > STEEP;
     let reference = if steep { DVec3::Z } else { DVec3::Y };
     let Basis { right, up, .. } = Basis::new(back, reference)?;

@@ -7,6 +7,7 @@
 mod camera;
 pub mod file;
 mod framing;
+mod from_distance;
 pub mod sets;
 mod sphere;
 
@@ -14,5 +15,6 @@ pub use camera::{
     Cull, Eye, Interpolation, Light, Matrix, SIDE_LIMIT, Shading, Specular, View, ViewSet,
 };
 pub use framing::Projection;
+pub use from_distance::Window;
 pub use sets::{BACKGROUND, ViewsName, resolve};
 pub use sphere::{Sphere, frame_of};

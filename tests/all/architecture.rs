@@ -63,6 +63,23 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "chain",
+        &[
+            "error",
+            "progress",
+            "num",
+            "encode",
+            "mesh",
+            "io",
+            "view",
+            "raster",
+            "metric",
+            "visibility",
+            "bound",
+            "simplify",
+        ],
+    ),
+    (
         "selfcheck",
         &[
             "error",
@@ -95,6 +112,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "bound",
             "collapse",
             "simplify",
+            "chain",
         ],
     ),
     (
@@ -115,6 +133,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "bound",
             "collapse",
             "simplify",
+            "chain",
             "selfcheck",
             "front",
         ],

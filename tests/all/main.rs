@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bound;
+mod chain;
 mod cli;
 mod collapse;
 mod encode;

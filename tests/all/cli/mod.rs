@@ -5,6 +5,7 @@ mod compare;
 mod exit_codes;
 mod help;
 mod levels;
+mod lod;
 mod normals;
 mod odd_files;
 mod replay;

@@ -134,3 +134,32 @@ fn views_are_rolled_evenly_around_their_axes() {
         "counter-clockwise: up is -x after a quarter"
     );
 }
+
+#[test]
+fn a_window_from_twice_the_radius_is_the_middle_of_the_whole_picture() {
+    let s = Sphere {
+        center: DVec3::new(0.3, -2.0, 5.0),
+        radius: 0.75,
+    };
+    let directions = named_sets::rhombicuboctahedron();
+    let projection = Projection::Perspective;
+    let whole = ViewSet::around(&s, &directions, 300, 300, projection).expect("views");
+    let window = Window {
+        side: 100,
+        pixel: 2.0 / sqrt(3.0) / 300.0,
+        samples: 2,
+    };
+    let part = ViewSet::from_distance(&s, &directions, 1.5, window).expect("views");
+    assert_eq!((part.width, part.height, part.samples), (100, 100, 2));
+    for (a, b) in whole.views.iter().zip(&part.views) {
+        for p in [DVec3::ZERO, DVec3::X, DVec3::new(0.1, -0.2, 0.3)] {
+            let [x, y, _, w] = clip(a, s.center + 0.5 * p);
+            let [u, v, _, h] = clip(b, s.center + 0.5 * p);
+            assert!((300.0 * x / w - 100.0 * u / h).abs() < 1e-9);
+            assert!((300.0 * y / w - 100.0 * v / h).abs() < 1e-9);
+        }
+    }
+    for distance in [0.0, 0.75, -3.0, f64::NAN, f64::INFINITY] {
+        assert!(ViewSet::from_distance(&s, &directions, distance, window).is_err());
+    }
+}

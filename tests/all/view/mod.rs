@@ -12,7 +12,7 @@ use lodmark::{
     num::{Frame, Precision, fixed::SubpixelBits, math::sqrt},
     view::{
         Cull, Eye, Interpolation, Light, Projection, Shading, Specular, Sphere, View, ViewSet,
-        ViewsName, frame_of, resolve, sets as named_sets,
+        ViewsName, Window, frame_of, resolve, sets as named_sets,
     },
 };
 use proptest::prelude::*;

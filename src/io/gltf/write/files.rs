@@ -43,10 +43,7 @@ pub(in crate::rooms::io) fn encode(mesh: &Mesh, format: Format) -> Result<(Vec<u
 pub(in crate::rooms::io) fn write(path: &Path, mesh: &Mesh, format: Format) -> Result<Vec<String>> {
     let folder = folder_of(path);
     let asset = mesh.materials().asset.as_deref();
-    let same_folder = asset.is_some_and(|asset| {
-        let real = |folder: &Path| fs::canonicalize(or_here(folder)).ok();
-        real(&asset.folder).is_some_and(|there| Some(there) == real(folder))
-    });
+    let same_folder = asset.is_some_and(|asset| lies_in(asset, folder));
     if format == Format::Glb {
         let is_one_file = asset.is_some_and(has_own_buffer);
         let mut written = document(mesh, !(same_folder && is_one_file))?;
@@ -72,6 +69,12 @@ pub(in crate::rooms::io) fn write(path: &Path, mesh: &Mesh, format: Format) -> R
     Ok(written.notes)
 }
 
+/// Whether the images that a document names lie in this very folder.
+pub(super) fn lies_in(asset: &Asset, folder: &Path) -> bool {
+    let real = |folder: &Path| fs::canonicalize(or_here(folder)).ok();
+    real(&asset.folder).is_some_and(|there| Some(there) == real(folder))
+}
+
 /// Whether the first buffer lies in the document's own file.
 fn has_own_buffer(asset: &Asset) -> bool {
     let buffers = asset.sections.iter().find(|(name, _)| name == "buffers");
@@ -93,7 +96,7 @@ fn or_here(folder: &Path) -> &Path {
 }
 
 /// Copies the images of the document's folder; one whose name another file has gets another name.
-fn copy_images(written: &mut Written, asset: &Asset, folder: &Path) -> Result<()> {
+pub(super) fn copy_images(written: &mut Written, asset: &Asset, folder: &Path) -> Result<()> {
     let named = images::named(&written.sections, &mut written.notes)?;
     let mut entries = json::entries(written.sections.get("images").unwrap_or("[]"))?;
     let mut renamed = false;
@@ -138,7 +141,7 @@ fn free_name(folder: &Path, name: &Path, bytes: &[u8], replaces: bool) -> PathBu
 }
 
 /// A path as a URI.
-fn escaped(path: &Path) -> String {
+pub(super) fn escaped(path: &Path) -> String {
     let mut uri = String::new();
     for byte in path.to_string_lossy().replace('\\', "/").bytes() {
         if byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte) {
@@ -151,7 +154,7 @@ fn escaped(path: &Path) -> String {
 }
 
 /// Describes the one buffer, unless its entry is right as it is.
-fn set_buffer(written: &mut Written, uri: Option<&str>) -> Result<()> {
+pub(super) fn set_buffer(written: &mut Written, uri: Option<&str>) -> Result<()> {
     let sections = &mut written.sections;
     if written.binary.is_empty() {
         sections.remove(&["buffers"]);

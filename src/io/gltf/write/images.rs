@@ -98,7 +98,7 @@ pub(super) fn embed(
 }
 
 /// The media type that the first bytes of an image show.
-fn media_type(bytes: &[u8]) -> Option<&'static str> {
+pub(super) fn media_type(bytes: &[u8]) -> Option<&'static str> {
     let at = |offset: usize, sign: &[u8]| bytes.get(offset..).is_some_and(|b| b.starts_with(sign));
     type Sign<'a> = (usize, &'a [u8]);
     let types: [(&[Sign<'_>], &str); 6] = [

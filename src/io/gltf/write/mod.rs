@@ -3,7 +3,8 @@
 //! A primitive whose triangles are those of the source stays as it is. Of another one every vertex that is still there
 //! keeps its stored values ([`vertices`]); new accessors are appended, and no index changes ([`additions`]). What nothing
 //! refers to any more loses its bytes ([`prune`]), everything else is copied as it stands: text entry by entry
-//! ([`json`]), bytes into one buffer ([`pack`]). A mesh of another format gets a document of its own ([`fresh`]).
+//! ([`json`]), bytes into one buffer ([`pack`]). A mesh of another format gets a document of its own ([`fresh`]). Several
+//! files of one document can share its images ([`mod@share`]).
 
 mod additions;
 mod files;
@@ -15,6 +16,7 @@ mod pack;
 mod primitive;
 mod prune;
 mod references;
+mod share;
 mod vertices;
 mod weights;
 
@@ -31,6 +33,7 @@ use crate::{
 };
 
 pub(in crate::rooms::io) use files::{encode, write};
+pub use share::{SharedImages, share_images};
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 

@@ -1,0 +1,5 @@
+//! Chains of levels of detail: sizes, switch distances, files.
+
+mod files;
+mod levels;
+mod switch_distance;
