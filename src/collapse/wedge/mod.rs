@@ -2,6 +2,7 @@
 
 mod blend;
 mod charts;
+mod classes;
 mod coordinates;
 mod displaced;
 mod oriented_volume;
