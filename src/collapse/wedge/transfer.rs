@@ -12,14 +12,19 @@ use super::{
     Blend, WedgeRows,
     classes::{Corner, Sides, compare_bits, corners_of, divide},
     coordinates::{self, ChartFace},
+    makes_features,
     oriented_volume::Otherwise,
     same_bits, texture_area,
+    values::{ClassCorner, WIDEST, WedgeClass, WedgeValues, members_of},
 };
 use crate::{
     collapse::{EdgeStar, LiveMesh, Patch},
     mesh::{Channel, ChannelKind},
-    num::{Each, Precision},
+    num::{Each, Precision, math},
 };
+
+/// The place of a new vertex in frame units, and the method that gives its wedges their values, if one does.
+pub(in crate::rooms::collapse) type Place<'a> = (DVec3, Option<&'a dyn WedgeValues>);
 
 /// Buffers of [`transfer`]; all are equal.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +36,8 @@ pub(in crate::rooms::collapse) struct WedgeScratch {
     sides: Sides,
     /// The faces of one class.
     chart: Vec<ChartFace>,
+    /// The corners of one class.
+    members: Vec<ClassCorner>,
     /// The new rows, by their values.
     order: Vec<u32>,
 }
@@ -45,7 +52,7 @@ impl PartialEq for WedgeScratch {
 pub(in crate::rooms::collapse) fn transfer(
     live: &LiveMesh,
     star: &EdgeStar,
-    position: DVec3,
+    place: Place<'_>,
     patch: &mut Patch,
 ) {
     let rows = live.rows();
@@ -55,7 +62,7 @@ pub(in crate::rooms::collapse) fn transfer(
     let mut scratch = std::mem::take(&mut patch.scratch);
     scratch.gather(live, star);
     for &channel in &rows.channels {
-        scratch.fill(live, star, channel, position);
+        scratch.fill(live, star, channel, place);
     }
     let WedgeScratch {
         corners,
@@ -84,11 +91,11 @@ pub(in crate::rooms::collapse) fn transfer(
     patch.scratch = scratch;
 }
 
-/// True where a face of the star that stays would be turned over in texture space with the new vertex at `position`.
+/// True where a face of the star that stays would be turned over in texture space with the new vertex at a place.
 pub(in crate::rooms::collapse) fn turns_texture(
     live: &LiveMesh,
     star: &EdgeStar,
-    position: DVec3,
+    place: Place<'_>,
 ) -> bool {
     let rows = live.rows();
     let is_texture = |c: &Channel| matches!(c.kind, ChannelKind::TexCoord(_));
@@ -102,7 +109,7 @@ pub(in crate::rooms::collapse) fn turns_texture(
         .copied()
         .filter(is_texture)
         .any(|channel| {
-            scratch.fill(live, star, channel, position);
+            scratch.fill(live, star, channel, place);
             let mut corners = scratch.corners.iter().enumerate();
             corners.any(|(i, corner)| {
                 let face = &star.faces[corner.face];
@@ -127,17 +134,38 @@ fn texture_point(rows: &WedgeRows, channel: Channel, wedge: u32) -> [f64; 2] {
 /// # The steps of a transfer
 impl WedgeScratch {
     /// Collects the corners of the star at either end of its edge.
-    fn gather(&mut self, live: &LiveMesh, star: &EdgeStar) {
+    pub(super) fn gather(&mut self, live: &LiveMesh, star: &EdgeStar) {
         corners_of(live, star, &mut self.corners);
         self.values.clear();
         self.values
             .resize(self.corners.len() * live.rows().stride, 0.0);
     }
 
-    /// Fills in the values of one channel for every corner.
-    fn fill(&mut self, live: &LiveMesh, star: &EdgeStar, channel: Channel, position: DVec3) {
-        let rows = live.rows();
+    /// Divides the corners into the classes of a channel.
+    pub(super) fn divide(&mut self, live: &LiveMesh, star: &EdgeStar, channel: Channel) {
         divide(live, star, channel, &mut self.corners, &mut self.sides);
+    }
+
+    /// The corners, by the classes of the channel that they were divided by last.
+    pub(super) fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// The values of a channel at a corner.
+    pub(super) fn value(&self, rows: &WedgeRows, channel: Channel, corner: usize) -> &[f64] {
+        &self.values[corner * rows.stride + channel.offset..][..channel.kind.width()]
+    }
+
+    /// Fills in the values of one channel for every corner.
+    pub(super) fn fill(
+        &mut self,
+        live: &LiveMesh,
+        star: &EdgeStar,
+        channel: Channel,
+        (position, values): Place<'_>,
+    ) {
+        let rows = live.rows();
+        self.divide(live, star, channel);
         let is_texture = matches!(channel.kind, ChannelKind::TexCoord(_));
         self.firsts.clear();
         self.firsts.resize(self.corners.len(), [None; 2]);
@@ -155,14 +183,17 @@ impl WedgeScratch {
                 continue;
             }
             let ends = self.firsts[class].each(|first| first.map(|w| rows.value(channel, w)));
-            let solved = if is_texture {
-                self.coordinates(live, star, channel, (class, position, t))
-            } else {
-                None
+            let own =
+                values.and_then(|own| self.given(live, star, channel, (class, position, own)));
+            let solved = match own {
+                None if is_texture => self
+                    .coordinates(live, star, channel, (class, position, t))
+                    .map(|[s, t]| [s, t, 0.0, 0.0]),
+                own => own,
             };
             let into = &mut self.values[start(i)..][..width];
             match (solved, ends) {
-                (Some(solved), _) => into.copy_from_slice(&solved),
+                (Some(solved), _) => into.copy_from_slice(&solved[..width]),
                 (None, [Some(a), Some(b)]) => {
                     interpolate(channel.kind, live.precision(), a, b, t, into);
                 }
@@ -187,30 +218,80 @@ impl WedgeScratch {
         if let Some(end) = kept {
             return ends[end];
         }
+        if !self.chart(live, star, channel, class) {
+            return None;
+        }
+        let first = self.corners.iter().find(|c| c.class == class)?;
+        let scale = live
+            .charts
+            .of_triangle(channel.kind, star.faces[first.face].id);
+        let solved = coordinates::solve(&self.chart, position, scale, Otherwise { ends, at })?;
+        Some(solved.each(|x| live.precision().round(x)))
+    }
+
+    /// Collects the faces of a class of texture coordinates; false where some of them are unknown.
+    fn chart(&mut self, live: &LiveMesh, star: &EdgeStar, channel: Channel, class: usize) -> bool {
         self.chart.clear();
-        let mut scale = 1.0;
         let mut last = None;
         for corner in self.corners.iter().filter(|c| c.class == class) {
             if last.replace(corner.face) == Some(corner.face) {
                 continue;
             }
             let face = &star.faces[corner.face];
-            if self.chart.is_empty() {
-                scale = live.charts.of_triangle(channel.kind, face.id);
-            }
             self.chart.push(ChartFace {
                 points: face.points,
                 coordinates: live
                     .wedges(face.id)
-                    .each(|w| texture_point(rows, channel, w)),
+                    .each(|w| texture_point(live.rows(), channel, w)),
             });
         }
         let known = |f: &ChartFace| f.coordinates.iter().all(|c| !c[0].is_nan());
-        if !self.chart.iter().all(known) {
+        self.chart.iter().all(known)
+    }
+
+    /// The values that a method gives to a class, kept within its old triangles; `None` at an end of the edge, whose own
+    /// are kept, and where the method or a corner has none.
+    fn given(
+        &mut self,
+        live: &LiveMesh,
+        star: &EdgeStar,
+        channel: Channel,
+        (class, position, method): (usize, DVec3, &dyn WedgeValues),
+    ) -> Option<[f64; WIDEST]> {
+        let firsts = self.firsts[class];
+        let at_end = (0..2).any(|end| position == star.points[end] && firsts[end].is_some());
+        if at_end || !makes_features(channel.kind) {
             return None;
         }
-        let solved = coordinates::solve(&self.chart, position, scale, Otherwise { ends, at })?;
-        Some(solved.each(|x| live.precision().round(x)))
+        members_of(star, &self.corners, class, &mut self.members);
+        let corners = &self.members;
+        let mut values = method.values(star, &WedgeClass { channel, corners }, position)?;
+        if matches!(channel.kind, ChannelKind::TexCoord(_)) {
+            if !self.chart(live, star, channel, class) {
+                return None;
+            }
+            let [s, t, ..] = values;
+            let [s, t] = coordinates::nearest(&self.chart, [s, t])?;
+            values[..2].copy_from_slice(&[s, t]);
+        } else {
+            let rows = live.rows();
+            let triangles = self.members.iter().map(|c| live.wedges(c.triangle));
+            let own = |k: usize| {
+                triangles
+                    .clone()
+                    .flatten()
+                    .map(move |w| rows.value(channel, w)[k])
+            };
+            for (k, x) in values[..channel.kind.width()].iter_mut().enumerate() {
+                if own(k).any(f64::is_nan) {
+                    return None;
+                }
+                let [low, high] = math::range(own(k));
+                *x = x.clamp(low, high);
+            }
+        }
+        let values = values.each(|x| live.precision().round(x));
+        values.iter().all(|x| x.is_finite()).then_some(values)
     }
 }
 
