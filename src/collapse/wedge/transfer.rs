@@ -4,7 +4,8 @@
 //! a normal discontinuity does not tear texture coordinates: every class of corners ([`classes`](super::classes)) gets
 //! one value. Texture coordinates are solved over the faces of the class ([`coordinates`]). Everything else is
 //! interpolated along the edge at the foot of the new position, clamped to the edge. At an end a value is exactly that
-//! end's. Normals are made unit again. A value that either end lacks is absent.
+//! end's. Normals are made unit again. A value that either end lacks is absent. A method may give texture coordinates and
+//! colours away from the ends itself ([`WedgeValues`]); they are kept within the old triangles of their class too.
 
 use glam::DVec3;
 

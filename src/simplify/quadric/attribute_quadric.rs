@@ -31,6 +31,10 @@ pub struct AttributeQuadric {
     c: f64,
 }
 
+#[expect(
+    clippy::needless_range_loop,
+    reason = "entries of small matrices, by their indices"
+)]
 impl AttributeQuadric {
     /// `weight` times the squared distance to the plane of a face in space and values, less that to its plane in space;
     /// `scale` is the length of a unit of the values. `None` where the face or its slopes have no direction.

@@ -409,8 +409,8 @@ fn absent_values_steep_slopes_and_flat_triangles_are_survived() {
 fn displacement(mesh: &Mesh, map: impl Fn(DVec3) -> [f64; 2]) -> f64 {
     let faces = corners(mesh);
     let (mut sum, mut count) = (0.0, 0.0);
-    for i in 0..40_000 {
-        let at = DVec3::new(f64::from(i % 200), f64::from(i / 200), 0.0) * 0.0099
+    for i in 0..10_000 {
+        let at = DVec3::new(f64::from(i % 100), f64::from(i / 100), 0.0) * 0.0198
             - DVec3::new(0.985, 0.985, 0.0);
         let shown = faces.iter().find_map(|[(a, s), (b, t), (c, u)]| {
             let area = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).z;
@@ -427,7 +427,7 @@ fn displacement(mesh: &Mesh, map: impl Fn(DVec3) -> [f64; 2]) -> f64 {
             count += 1.0;
         }
     }
-    assert!(count > 39_000.0);
+    assert!(count > 9_900.0);
     f64::sqrt(sum / count)
 }
 
@@ -450,7 +450,6 @@ fn a_texture_that_bends_on_a_flat_sheet_is_kept_better_than_by_planes() {
             by_attributes(triangles),
         ]
         .map(error);
-        eprintln!("{triangles}: {plain} {own}");
         assert!(
             own < 0.5 * plain,
             "{triangles} triangles: {own}, and {plain} by planes"
