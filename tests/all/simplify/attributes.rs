@@ -6,6 +6,7 @@ use glam::DVec3;
 use lodmark::{
     collapse::{EdgeStar, Method, MethodScratch, Replay, Rules, Site},
     mesh::{Attributes, ChannelKind, Mesh, MeshParts, canonical, content_sha256, generate, weld},
+    num::math,
     simplify::{
         Options, Stop, Target, Topology,
         quadric::{AttributeQuadric, Quadric, QuadricMethod, QuadricOptions, Values},
@@ -428,7 +429,7 @@ fn displacement(mesh: &Mesh, map: impl Fn(DVec3) -> [f64; 2]) -> f64 {
         }
     }
     assert!(count > 9_900.0);
-    f64::sqrt(sum / count)
+    math::sqrt(sum / count)
 }
 
 #[test]
