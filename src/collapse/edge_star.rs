@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, Patch, PatchFace, patch::Move, pinch, wedge};
+use super::{LiveMesh, pinch, wedge};
 pub(super) use crate::geometry::area_normal as normal;
 use crate::num::Each;
 
@@ -147,29 +147,6 @@ impl EdgeStar {
     /// Midpoint of the edge.
     pub fn midpoint(&self) -> DVec3 {
         (self.points[0] + self.points[1]) * 0.5
-    }
-
-    /// Fills `patch` with the collapse of the edge to `position`.
-    ///
-    /// Wedges of the new vertex: see [`wedge`]. Allocates only while buffers grow.
-    pub fn patch(&self, live: &LiveMesh, position: DVec3, patch: &mut Patch) {
-        patch.clear();
-        let [u, w] = self.ends;
-        for face in &self.faces {
-            let old = live.patch_face(face.id);
-            patch.removed.push(old);
-            if face.survives {
-                let corners = face.corners.each(|v| if v == w { u } else { v });
-                patch.added.push(PatchFace { corners, ..old });
-            }
-        }
-        patch.moved = Some(Move {
-            vertex: u,
-            from: self.points[0],
-            to: position,
-        });
-        patch.gone = Some(w);
-        wedge::transfer(live, self, position, patch);
     }
 
     /// Number of edges at an end that have not exactly two faces, the edge itself included.

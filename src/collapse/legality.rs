@@ -10,7 +10,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EdgeStar, Evaluation, LiveMesh, Patch, Refusal, check_collapse_folds, edge_star::normal, wedge,
+    EdgeStar, Evaluation, LiveMesh, Patch, Refusal, check_collapse_folds,
+    edge_star::normal,
+    wedge::{self, WedgeValues},
 };
 use crate::num::Each;
 
@@ -163,6 +165,8 @@ pub struct Site<'a> {
     pub rules: Rules,
     /// Accuracy that is asked for: [`Evaluation::Exact`] unless the method's plan has rough evaluations.
     pub accuracy: Evaluation,
+    /// The values of new wedges, where a method gives some.
+    pub values: Option<&'a dyn WedgeValues>,
 }
 
 impl<'a> Site<'a> {
@@ -179,6 +183,7 @@ impl<'a> Site<'a> {
             breaks_seam,
             rules,
             accuracy: Evaluation::Exact,
+            values: None,
         })
     }
 
@@ -211,7 +216,7 @@ impl<'a> Site<'a> {
         shape(self.star, position, self.rules)?;
         check_collapse_folds(self.live, self.star, position, self.rules)?;
         let may_turn = self.rules.concession == Concession::Texture;
-        if !may_turn && wedge::turns_texture(self.live, self.star, position) {
+        if !may_turn && wedge::turns_texture(self.live, self.star, (position, self.values)) {
             return Err(Refusal::Mirror);
         }
         Ok(Admitted(position))
@@ -219,7 +224,8 @@ impl<'a> Site<'a> {
 
     /// Fills `patch` with the collapse to `position`: the faces of this candidate, under their final ids.
     pub fn patch(&self, position: Admitted, patch: &mut Patch) {
-        self.star.patch(self.live, position.0, patch);
+        self.star
+            .patch_by(self.live, position.0, self.values, patch);
     }
 }
 

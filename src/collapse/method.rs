@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use super::{Admitted, LiveMesh, Patch, Refusal, Site, legality::STAR_LIMIT};
+use super::{Admitted, LiveMesh, Patch, Refusal, Site, legality::STAR_LIMIT, wedge::WedgeValues};
 
 /// A collapse as a method proposes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +103,11 @@ pub trait Method: Send + Sync {
 
     /// The costs that can be had without an evaluation, for methods that keep sums.
     fn estimates(&self) -> Option<&dyn Estimates> {
+        None
+    }
+
+    /// The values of new wedges, for methods that place texture coordinates and colours as well.
+    fn wedge_values(&self) -> Option<&dyn WedgeValues> {
         None
     }
 

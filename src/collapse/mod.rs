@@ -13,7 +13,7 @@
 //!    (`fold`); the method prices the collapse, from its [`Patch`] where the cost needs the faces afterwards. The edge
 //!    goes back to the queue under the exact key.
 //! 5. At the front again, the star becomes the [`Patch`] that is committed: faces that go, faces that come, and the
-//!    wedges of the new vertex (`wedge`).
+//!    wedges of the new vertex (`wedge`), by [`Method::wedge_values`] where the method gives some.
 //! 6. [`Method::review`] has the last word, then [`LiveMesh::apply`] changes the lists.
 //! 7. [`Method::committed`] and [`Observer::committed`] follow; a [`Recorder`] keeps a [`Record`] of the patch.
 //! 8. `engine` marks the edges around the new vertex as stale and re-keys those that the [`Schedule`] wants at once.

@@ -6,7 +6,10 @@
 
 use glam::DVec3;
 
-use super::{LiveMesh, wedge::WedgeScratch};
+use super::{
+    EdgeStar, LiveMesh,
+    wedge::{WedgeScratch, WedgeValues, transfer},
+};
 use crate::num::Each;
 
 /// A face of a patch.
@@ -164,6 +167,42 @@ impl Patch {
             Some(m) if m.vertex == v => m.to,
             _ => live.position(v),
         })
+    }
+}
+
+impl EdgeStar {
+    /// Fills `patch` with the collapse of the edge to `position`.
+    ///
+    /// Wedges of the new vertex: see [`super::wedge`]. Allocates only while buffers grow.
+    pub fn patch(&self, live: &LiveMesh, position: DVec3, patch: &mut Patch) {
+        self.patch_by(live, position, None, patch);
+    }
+
+    /// Fills `patch` as [`EdgeStar::patch`] does, with the values of wedges by a method that gives some.
+    pub fn patch_by(
+        &self,
+        live: &LiveMesh,
+        position: DVec3,
+        values: Option<&dyn WedgeValues>,
+        patch: &mut Patch,
+    ) {
+        patch.clear();
+        let [u, w] = self.ends;
+        for face in &self.faces {
+            let old = live.patch_face(face.id);
+            patch.removed.push(old);
+            if face.survives {
+                let corners = face.corners.each(|v| if v == w { u } else { v });
+                patch.added.push(PatchFace { corners, ..old });
+            }
+        }
+        patch.moved = Some(Move {
+            vertex: u,
+            from: self.points[0],
+            to: position,
+        });
+        patch.gone = Some(w);
+        transfer(live, self, (position, values), patch);
     }
 }
 

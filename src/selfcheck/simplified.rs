@@ -57,6 +57,11 @@ fn geometric(collector: &mut Collector) -> Result<()> {
             let outcome = simplify(mesh, &options.topology(Topology::Preserve))?;
             outcome_items(collector, &format!("{name}/{method}"), &outcome);
         }
+        if ["textured-torus", "colored-torus"].contains(name) {
+            let options = Options::quadric(target).attributes();
+            let outcome = simplify(mesh, &options.topology(Topology::Preserve))?;
+            outcome_items(collector, &format!("{name}/quadric-attributes"), &outcome);
+        }
     }
     Ok(())
 }

@@ -317,6 +317,17 @@ impl Options {
         }
         self
     }
+
+    /// Distances in space and in texture coordinates and colours (Garland & Heckbert 1998), which new vertices get from the
+    /// same minimum; for the quadric method.
+    #[must_use]
+    pub fn attributes(mut self) -> Self {
+        match &mut self.method {
+            MethodOptions::Quadric(own) => own.attributes = true,
+            _ => self.refuse("attributes"),
+        }
+        self
+    }
 }
 
 impl Options {

@@ -100,6 +100,9 @@ pub(super) struct SimplifyArgs {
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
     #[arg(long, hide_short_help = true)]
     probabilistic: bool,
+    /// Distances in space, texture coordinates and colours, instead of in space alone (Garland & Heckbert 1998)
+    #[arg(long, hide_short_help = true)]
+    attributes: bool,
     #[command(flatten)]
     guidance: GuidanceArgs,
     #[command(flatten)]

@@ -43,6 +43,11 @@ const GROUPS: &[Group] = &[
         ],
     },
     Group {
+        heading: "Method quadric",
+        methods: &[Quadric],
+        options: &["attributes"],
+    },
+    Group {
         heading: "Methods quadric and visibility",
         methods: &[Quadric, Visibility],
         options: &["probabilistic"],
@@ -81,10 +86,11 @@ const GROUPS: &[Group] = &[
 /// # Errors
 /// [`Error::Usage`] where one that it needs is missing or out of range; what reading a file says.
 pub(super) fn method_options(args: &SimplifyArgs) -> Result<MethodOptions> {
-    let quadric = match args.probabilistic {
+    let mut quadric = match args.probabilistic {
         true => QuadricOptions::probabilistic(),
         false => QuadricOptions::default(),
     };
+    quadric.attributes = args.attributes;
     Ok(match args.method {
         Image => MethodOptions::Image(args.image.options()?),
         Memoryless => MethodOptions::Memoryless(MemorylessOptions::default()),

@@ -141,7 +141,9 @@ impl Engine {
                         continue;
                     }
                     let position = proposal.position.position();
-                    self.star.patch(&self.live, position, &mut self.patch);
+                    let values = method.wedge_values();
+                    self.star
+                        .patch_by(&self.live, position, values, &mut self.patch);
                     let cost = proposal.secondary;
                     let affordable = self.cost_limit.is_none_or(|limit| cost <= limit);
                     match method.review(&self.live, &self.patch) {
@@ -347,6 +349,7 @@ impl Evaluator<'_> {
         }
         let site = Site {
             accuracy: self.how,
+            values: self.method.wedge_values(),
             ..Site::new(self.live, star, self.rules)?
         };
         self.method.propose(&site, scratch)

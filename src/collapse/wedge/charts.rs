@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::WedgeRows;
 use crate::{
-    collapse::pinch::Forest,
+    collapse::{LiveMesh, pinch::Forest},
     mesh::{Channel, ChannelKind, Mesh},
     num::math,
 };
@@ -39,6 +39,14 @@ impl ChartScales {
         let set = self.0.iter().find(|(k, _)| *k == kind);
         let scale = set.and_then(|(_, scales)| scales.get(triangle as usize));
         scale.map_or(1.0, |&s| f64::from(s))
+    }
+}
+
+impl LiveMesh {
+    /// The length on the surface, in frame units, of a unit of a set of texture coordinates in the chart that a triangle
+    /// belonged to at first.
+    pub fn texture_scale(&self, set: ChannelKind, triangle: u32) -> f64 {
+        self.charts.of_triangle(set, triangle)
     }
 }
 

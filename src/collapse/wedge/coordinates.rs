@@ -51,7 +51,7 @@ fn preserve_volume(faces: &[ChartFace], position: DVec3) -> DVec3 {
 }
 
 /// The point of the faces in texture space that is nearest to `p`: `p` itself where a face holds it.
-fn nearest(faces: &[ChartFace], p: [f64; 2]) -> Option<[f64; 2]> {
+pub(super) fn nearest(faces: &[ChartFace], p: [f64; 2]) -> Option<[f64; 2]> {
     let mut best: Option<(f64, [f64; 2])> = None;
     for face in faces {
         let [a, b, c] = face.coordinates;

@@ -2,11 +2,14 @@
 
 mod blend;
 mod charts;
+mod classes;
 mod coordinates;
 mod displaced;
 mod oriented_volume;
 mod transfer;
+mod values;
 
+pub use self::values::{ClassCorner, WIDEST, WedgeClass, WedgeValues};
 pub(super) use self::{
     blend::Blend,
     charts::ChartScales,
@@ -86,18 +89,29 @@ impl WedgeRows {
         self.values.truncate(self.values.len() - values);
     }
 
-    pub(super) fn value(&self, channel: Channel, wedge: u32) -> &[f64] {
+    /// The values of a channel at a wedge.
+    ///
+    /// # Panics
+    /// Where there is no such wedge.
+    #[must_use]
+    pub fn value(&self, channel: Channel, wedge: u32) -> &[f64] {
         &self.row(wedge)[channel.offset..][..channel.kind.width()]
     }
 
-    pub(super) fn same(&self, channel: Channel, a: u32, b: u32) -> bool {
+    /// True where two wedges have the same values of a channel, to the bit.
+    ///
+    /// # Panics
+    /// Where there is no such wedge.
+    #[must_use]
+    pub fn same(&self, channel: Channel, a: u32, b: u32) -> bool {
         a == b || same_bits(self.value(channel, a), self.value(channel, b))
     }
 }
 
-/// Texture coordinates and colours are seen to jump. Normals differ at almost every edge of a flat-shaded export; that
+/// True for texture coordinates and colours, which are seen to jump. Normals differ at almost every edge of a flat-shaded export; that
 /// alone is no feature. The rest is not seen.
-pub(super) fn makes_features(kind: ChannelKind) -> bool {
+#[must_use]
+pub fn makes_features(kind: ChannelKind) -> bool {
     matches!(
         kind,
         ChannelKind::TexCoord(_) | ChannelKind::Color | ChannelKind::ColorAlpha

@@ -2,10 +2,11 @@
 
 use std::any::Any;
 
-use super::{Quadric, QuadricOptions, Weighting};
+use super::{AttributeQuadrics, Quadric, QuadricOptions, Weighting};
 use crate::{
     collapse::{
         Estimates, LiveMesh, Method, MethodScratch, Patch, Proposal, Refusal, Site, Tileable,
+        wedge::WedgeValues,
     },
     num::math,
 };
@@ -18,15 +19,23 @@ const SEAM_PRICE: f64 = 1.0;
 #[derive(Clone, Debug)]
 pub struct QuadricMethod {
     quadrics: Vec<Quadric>,
+    /// Those of texture coordinates and colours, where they count and the mesh has some.
+    attributes: Option<AttributeQuadrics>,
 }
 
 impl QuadricMethod {
     /// The quadrics of a mesh: the planes of its faces, and planes that stand on its boundary edges. O(n).
     pub fn new(live: &LiveMesh, options: &QuadricOptions) -> Self {
-        Self::weighted(live, options, |_| 1.0)
+        let attributes = options.attributes;
+        let attributes = attributes.then(|| AttributeQuadrics::new(live, options.weighting));
+        Self {
+            attributes: attributes.flatten(),
+            ..Self::weighted(live, options, |_| 1.0)
+        }
     }
 
-    /// As [`QuadricMethod::new`], with the planes of a face and of its boundary edges times `factor` of the face's id.
+    /// As [`QuadricMethod::new`], with the planes of a face and of its boundary edges times `factor` of the face's id, and
+    /// without attributes.
     pub fn weighted(
         live: &LiveMesh,
         options: &QuadricOptions,
@@ -72,7 +81,10 @@ impl QuadricMethod {
                 }
             }
         }
-        Self { quadrics }
+        Self {
+            quadrics,
+            attributes: None,
+        }
     }
 
     /// The quadric of a vertex.
@@ -105,17 +117,32 @@ impl Method for QuadricMethod {
     fn propose(&self, site: &Site<'_>, _: &mut MethodScratch) -> Result<Proposal, Refusal> {
         let [u, w] = site.star.ends;
         let sum = self.quadric(u).plus(self.quadric(w));
-        let wanted = site.fixed().unwrap_or_else(|| sum.place(site.star.points));
+        let wanted = site.fixed().unwrap_or_else(|| {
+            let own = self.attributes.as_ref();
+            let sum = own.map_or(sum, |own| own.placing(site, sum));
+            sum.place(site.star.points)
+        });
         let position = site.admit(wanted)?;
         let lost = site.seam_loss(position);
+        let mut error = sum.error(position.position());
+        if let Some(own) = &self.attributes {
+            error += own.error(site, position);
+        }
         Ok(Proposal {
             position,
             primary: 0,
-            secondary: sum.error(position.position()) + SEAM_PRICE * (lost * lost),
+            secondary: error + SEAM_PRICE * (lost * lost),
         })
     }
 
-    fn committed(&mut self, _: &LiveMesh, patch: &Patch) {
+    fn wedge_values(&self) -> Option<&dyn WedgeValues> {
+        self.attributes.as_ref().map(|own| own as &dyn WedgeValues)
+    }
+
+    fn committed(&mut self, live: &LiveMesh, patch: &Patch) {
+        if let Some(own) = &mut self.attributes {
+            own.committed(live, patch);
+        }
         if let (Some(moved), Some(gone)) = (patch.moved, patch.gone) {
             let sum = self.quadric(moved.vertex).plus(self.quadric(gone));
             self.quadrics[moved.vertex as usize] = sum;
@@ -123,6 +150,7 @@ impl Method for QuadricMethod {
     }
 }
 
+/// Of positions alone, below the cost with attributes: an edge with such waits under that until it comes to the front.
 impl Estimates for QuadricMethod {
     fn estimate(&self, live: &LiveMesh, edge: u32) -> Option<f64> {
         let [u, w] = live.edge(edge)?;
@@ -136,10 +164,11 @@ impl Estimates for QuadricMethod {
 }
 
 impl QuadricMethod {
-    /// The quadrics of some vertices, under new ids.
+    /// The quadrics of some vertices, under new ids, without attributes, which no part of a mesh has.
     pub(in crate::rooms::simplify) fn part_of(&self, vertices: &[u32]) -> Self {
         Self {
             quadrics: vertices.iter().map(|&v| *self.quadric(v)).collect(),
+            attributes: None,
         }
     }
 

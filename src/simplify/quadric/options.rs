@@ -32,6 +32,10 @@ pub struct QuadricOptions {
     pub boundary_weight: f64,
     /// Probabilistic quadrics, or `None` for exact planes.
     pub uncertainty: Option<Uncertainty>,
+    /// Distances in space and in texture coordinates and colours (1998), which new vertices get from the same minimum;
+    /// not for the visibility-guided method.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub attributes: bool,
 }
 
 impl QuadricOptions {
@@ -58,6 +62,7 @@ impl Default for QuadricOptions {
             weighting: Weighting::default(),
             boundary_weight: 1.0,
             uncertainty: None,
+            attributes: false,
         }
     }
 }

@@ -16,6 +16,11 @@ pub struct Quadric {
 const WELL_CONDITIONED: f64 = 1e-5;
 
 impl Quadric {
+    /// The function with the given coefficients.
+    pub(super) fn new(a: Sym3, b: DVec3, c: f64) -> Self {
+        Self { a, b, c }
+    }
+
     /// `weight` times the squared distance to the plane through `point` with unit normal `normal`.
     pub fn plane(point: DVec3, normal: DVec3, weight: f64) -> Self {
         Self::uncertain_plane(point, normal, weight, 0.0, 0.0)

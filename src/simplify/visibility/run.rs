@@ -18,6 +18,11 @@ impl MethodRun for VisibilityOptions {
     fn check(&self) -> Result<()> {
         require_within("tie-weight", self.tie_weight, 0.0, 1.0)?;
         self.measure.check()?;
+        if self.quadric.attributes {
+            return Err(Error::Usage(
+                "attributes mean nothing to the method `visibility`, which orders by planes alone; leave them out".into(),
+            ));
+        }
         self.quadric.check()
     }
 

@@ -78,8 +78,7 @@ fn every_binary_file_is_named_with_what_writes_and_what_reads_it() {
 fn the_short_help_leaves_out_what_few_need_and_the_long_one_has_it() {
     let dir = folder();
     let [short, long] = ["-h", "--help"].map(|word| stdout(&lodmark(&dir, &["simplify", word])));
-    let rare =
-        "--engine --evaluation --measure-rank --volume --growing --probabilistic --keep-folds";
+    let rare = "--engine --evaluation --measure-rank --volume --growing --probabilistic --attributes --keep-folds";
     for option in split(rare) {
         assert!(!short.contains(option) && long.contains(option), "{option}");
     }

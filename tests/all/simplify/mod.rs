@@ -1,5 +1,6 @@
 //! The methods: what each promises of its results.
 
+mod attributes;
 mod billboards;
 mod deviation;
 mod fallback;

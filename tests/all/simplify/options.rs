@@ -77,12 +77,13 @@ fn a_step_that_means_nothing_to_the_method_is_refused_by_name() {
     let cell = ViewCell::point(glam::DVec3::ONE).expect("finite");
     let bound = ViewBoundedOptions::new(cell, 1.0);
     type Step = fn(Options) -> Options;
-    let steps: [(&str, Step); 5] = [
+    let steps: [(&str, Step); 6] = [
         ("preset", |o| o.preset(Preset::Fast)),
         ("shading", |o| o.shading(DrivingShading::Mixed)),
         ("views", |o| o.views(ViewsName::Dodecahedron)),
         ("polish", |o| o.polish(3)),
         ("probabilistic", Options::probabilistic),
+        ("attributes", Options::attributes),
     ];
     for options in [
         Options::memoryless(target()),
@@ -99,6 +100,7 @@ fn a_step_that_means_nothing_to_the_method_is_refused_by_name() {
     for (name, options) in [
         ("keep_folds", Options::image(target()).keep_folds()),
         ("probabilistic", Options::image(target()).probabilistic()),
+        ("attributes", Options::visibility(target()).attributes()),
         ("error-rms", Options::quadric(target()).error_rms(2.0)),
     ] {
         let refused = options.check().expect_err("refused").to_string();

@@ -21,7 +21,7 @@ fn options(weighting: Weighting) -> QuadricOptions {
         weighting,
         // The ring's outer edges are boundaries of the test's mesh, not of the vector's.
         boundary_weight: 0.0,
-        uncertainty: None,
+        ..QuadricOptions::default()
     }
 }
 

@@ -60,7 +60,7 @@ fn an_edge_is_placed_without_visibility_and_priced_with_its_square() {
             weighting: Weighting::Unit,
             // The star's outer edges are boundaries of the test's mesh, not of the vector's.
             boundary_weight: 0.0,
-            uncertainty: None,
+            ..QuadricOptions::default()
         },
         tie_weight: 0.0,
         ..VisibilityOptions::default()
