@@ -18,7 +18,7 @@ pub mod options {
     pub use super::render::RenderOptions;
     pub use crate::metric::report::CompareOptions;
     pub use crate::simplify::{
-        MethodOptions, Normals, Rules, Schedule, Topology,
+        MethodOptions, Normals, Rules, Schedule, Topology, Weights,
         image::{DrivingShading, EngineName, ImageOptions, Polish, Size, Start},
         memoryless::{ConstraintOrder, MemorylessOptions, Objective, Placement},
         quadric::{QuadricOptions, Uncertainty, Weighting},
@@ -47,7 +47,7 @@ pub mod reports {
         },
         num::Grid,
         simplify::{
-            NormalsReport, Phase, Report,
+            NormalsReport, Phase, Report, WeightsReport,
             image::{Comparison as Fallback, ImageReport, PolishCounters},
             tolerance::Guarantee,
             view_bounded::ViewBoundedReport,

@@ -21,6 +21,7 @@ mod target;
 pub mod tolerance;
 pub mod view_bounded;
 pub mod visibility;
+mod weights;
 
 /// The history that an [`Outcome`] carries to rebuild any level, the type that rebuilds it, and the enums of
 /// [`Options`].
@@ -32,3 +33,4 @@ pub use outcome::{Outcome, Phase};
 pub use run::{simplify, simplify_with};
 pub use target::Target;
 pub use visibility::simplify_guided;
+pub use weights::{Weights, WeightsReport};

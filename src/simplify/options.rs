@@ -11,6 +11,7 @@ use super::{
     tolerance::ToleranceOptions,
     view_bounded::ViewBoundedOptions,
     visibility::VisibilityOptions,
+    weights::Weights,
 };
 use crate::{
     Error, Result,
@@ -48,6 +49,9 @@ pub struct Options {
     /// Curves of the input whose vertices stay where they are.
     #[serde(default, skip_serializing_if = "Locks::is_none")]
     pub locks: Locks,
+    /// Weights of the vertices of the input: what weighs more keeps more triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Weights>,
     /// When edges are evaluated again.
     pub schedule: Schedule,
     /// Measure the true rank of every n-th collapse among all legal ones; 0 is off. Changes no result.
@@ -82,6 +86,7 @@ impl Options {
             rules: own.rules(),
             per_mesh: false,
             locks: Locks::default(),
+            weights: None,
             schedule: own.schedule(),
             unfold: own.only_orders(),
             method,
@@ -336,6 +341,9 @@ impl Options {
             return Err(Error::Usage(format!(
                 "unfold means nothing to the method `{name}`: it judges every change itself; leave it out"
             )));
+        }
+        if let Some(weights) = &self.weights {
+            weights.check()?;
         }
         require_within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         require_within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;

@@ -45,6 +45,13 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             outcome.locked_vertices
         ));
     }
+    if let Some(report) = outcome.weights {
+        terminal.say(&format!(
+            "weights: {} of {} vertices of weight 1 are in the result where they were; mean weight {:.3} of vertices that \
+             stayed, {:.3} of those that are gone",
+            report.held, report.locked, report.mean_kept, report.mean_removed
+        ));
+    }
     if let Some(report) = outcome.normals {
         tell_normals(report, terminal);
     }

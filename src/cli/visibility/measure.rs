@@ -147,7 +147,7 @@ pub(crate) fn run(args: &VisibilityArgs, common: &Common, terminal: &Terminal) -
     };
     let mesh = input::read(&args.input, !args.no_weld, terminal)?;
     input::require_triangles(&args.input, &mesh)?;
-    let mesh = input::canonical(&args.input, mesh, terminal);
+    let mesh = input::canonical(&args.input, &mesh, terminal).mesh;
     input::require_triangles(&args.input, &mesh)?;
     let resolved = serde_json::json!({ "input": args.input, "measurement": measurement });
     if let (Some(range), Some(path)) = (&args.view_range, &args.partial) {

@@ -9,3 +9,4 @@ mod normals;
 mod odd_files;
 mod replay;
 mod visibility;
+mod weights;

@@ -17,3 +17,4 @@ mod targets;
 mod tolerance;
 mod view_bounded;
 mod visibility_guided;
+mod weights;
