@@ -23,4 +23,4 @@ mod write;
 pub use format::{Encoding, Format};
 pub use read::{Loaded, read, read_bytes};
 pub use summary::Summary;
-pub use write::{encode, writable_format, write};
+pub use write::{encode, writable_format, write, written_beside};

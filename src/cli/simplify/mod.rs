@@ -231,8 +231,10 @@ pub(super) fn run(
     option_table::refuse_foreign(options.method, matches)?;
     let mut resolved = options.resolve()?;
     io::writable_format(&options.output)?;
+    let beside = io::written_beside(&options.output);
     let outputs = [
         Some(&options.output),
+        beside.as_ref(),
         options.history.as_ref(),
         options.view_bound.output(),
         common.json.as_ref(),

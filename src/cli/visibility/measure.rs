@@ -257,10 +257,13 @@ fn check_outputs(
             path.display()
         )));
     }
+    let mut beside = None;
     if let Some(path) = &options.remove_hidden {
         io::writable_format(path)?;
+        beside = io::written_beside(path);
     }
     let single = [
+        &beside,
         &options.out,
         &options.table,
         &options.remove_hidden,

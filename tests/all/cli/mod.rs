@@ -1,5 +1,6 @@
 //! The command as a user runs it.
 
+mod beside;
 mod bound;
 mod compare;
 mod exit_codes;

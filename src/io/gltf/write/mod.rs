@@ -30,7 +30,7 @@ use crate::{
     mesh::{Asset, Mesh},
 };
 
-pub(in crate::rooms::io) use files::{encode, write};
+pub(in crate::rooms::io) use files::{buffer_beside, encode, write};
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
