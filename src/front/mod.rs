@@ -18,7 +18,7 @@ pub mod options {
     pub use super::render::RenderOptions;
     pub use crate::metric::report::CompareOptions;
     pub use crate::simplify::{
-        MethodOptions, Normals, Rules, Schedule, Topology, Weights,
+        MethodOptions, Normals, Rules, Schedule, Tangents, Topology, Weights,
         image::{DrivingShading, EngineName, ImageOptions, Polish, Size, Start},
         memoryless::{ConstraintOrder, MemorylessOptions, Objective, Placement},
         quadric::{QuadricOptions, Uncertainty, Weighting},
@@ -47,7 +47,7 @@ pub mod reports {
         },
         num::Grid,
         simplify::{
-            NormalsReport, Phase, Report, WeightsReport,
+            NormalsReport, Phase, Report, TangentsReport, WeightsReport,
             image::{Comparison as Fallback, ImageReport, PolishCounters},
             tolerance::Guarantee,
             view_bounded::ViewBoundedReport,

@@ -8,6 +8,7 @@ use super::{
     memoryless::MemorylessOptions,
     methods::ErrorLimit,
     quadric::QuadricOptions,
+    tangents::Tangents,
     tolerance::ToleranceOptions,
     view_bounded::ViewBoundedOptions,
     visibility::VisibilityOptions,
@@ -67,6 +68,10 @@ pub struct Options {
         skip_serializing_if = "Normals::are_carried"
     )]
     pub normals: Normals,
+    /// The stored tangents of the result. Of a run that is over: [`Tangents::Carry`] where the input has no texture
+    /// coordinates or no normals.
+    #[serde(default, skip_serializing_if = "Tangents::are_carried")]
+    pub tangents: Tangents,
     /// The first step that meant nothing to the method.
     #[serde(skip)]
     pub(crate) foreign: Option<&'static str>,
@@ -94,6 +99,7 @@ impl Options {
             error_rms: None,
             measure_rank: 0,
             normals: Normals::default(),
+            tangents: Tangents::default(),
             foreign: None,
             settled: false,
         }
@@ -208,6 +214,14 @@ impl Options {
     #[must_use]
     pub fn normals(mut self, normals: Normals) -> Self {
         self.normals = normals;
+        self
+    }
+
+    /// The way in which a result gets its stored tangents; by default it has those that the collapses carried. An input that
+    /// has no more triangles than wanted is copied with its own.
+    #[must_use]
+    pub fn tangents(mut self, tangents: Tangents) -> Self {
+        self.tangents = tangents;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{NormalsReport, Options, Report, WeightsReport};
+use super::{NormalsReport, Options, Report, TangentsReport, WeightsReport};
 use crate::{
     collapse::{Concession, Counters, History, Stop},
     mesh::Mesh,
@@ -44,6 +44,8 @@ pub struct Outcome {
     pub options: Options,
     /// The price of its normals in vertices, where they are not those that the collapses carried.
     pub normals: Option<NormalsReport>,
+    /// The account of its tangents, where they are not those that the collapses carried.
+    pub tangents: Option<TangentsReport>,
     /// The report of the method.
     pub report: Report,
 }

@@ -2,7 +2,7 @@
 
 use super::{
     MethodOptions, Options, Outcome, Phase, Report, WeightsReport, normals,
-    repair_folds::repair_folds,
+    repair_folds::repair_folds, tangents,
 };
 use crate::{
     Error, Progress, Result, Silent,
@@ -120,7 +120,10 @@ impl<'a> Run<'a> {
             locked: live.locked_vertices(),
             live,
             seen_pieces: None,
-            options: options.clone().normals(options.normals.of(mesh)),
+            options: options
+                .clone()
+                .normals(options.normals.of(mesh))
+                .tangents(options.tangents.of(mesh)),
             target,
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
@@ -260,12 +263,15 @@ impl<'a> Run<'a> {
         options.settled = false;
         let json = serde_json::to_string(&options).map_err(|e| Error::Internal(e.to_string()))?;
         let history = self.recorder.finish(json);
-        let (mesh, normals) = match stop {
-            Stop::TargetAboveInput => (self.mesh.clone(), None),
-            _ if history.is_empty() => (self.live.to_mesh()?, None),
+        let (mesh, normals, tangents) = match stop {
+            Stop::TargetAboveInput => (self.mesh.clone(), None, None),
+            _ if history.is_empty() => (self.live.to_mesh()?, None, None),
             _ => {
                 let carried = self.live.to_mesh()?;
-                normals::settle(self.mesh, carried, options.normals, self.progress)?
+                let (mesh, normals) =
+                    normals::settle(self.mesh, carried, options.normals, self.progress)?;
+                let (mesh, tangents) = tangents::settle(mesh, options.tangents)?;
+                (mesh, normals, tangents)
             }
         };
         let weights = options.weights.as_ref();
@@ -279,6 +285,7 @@ impl<'a> Run<'a> {
             phases: self.phases,
             options,
             normals,
+            tangents,
             report,
         })
     }

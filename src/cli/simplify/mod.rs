@@ -22,8 +22,8 @@ use crate::{
     io,
     mesh::content_sha256,
     simplify::{
-        MethodName, Normals, NormalsReport, Options as RunOptions, Outcome, Stop, Target,
-        WeightsReport,
+        MethodName, Normals, NormalsReport, Options as RunOptions, Outcome, Stop, Tangents,
+        TangentsReport, Target, WeightsReport,
         image::{Comparison, PolishCounters},
         simplify_guided, simplify_with,
         tolerance::Guarantee,
@@ -104,6 +104,9 @@ pub(super) struct SimplifyArgs {
     /// The stored normals of the result, where IN has some
     #[arg(long, value_enum, default_value_t = Normals::Fit)]
     normals: Normals,
+    /// The stored tangents of the result
+    #[arg(long, value_enum, default_value_t = Tangents::Carry)]
+    tangents: Tangents,
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
     #[arg(long, hide_short_help = true)]
     probabilistic: bool,
@@ -155,6 +158,9 @@ struct Summary<'a> {
     /// The price of normals that are not the carried ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     normals: Option<NormalsReport>,
+    /// The account of tangents that were made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tangents: Option<TangentsReport>,
     /// Of images and geometry, where they were close.
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
@@ -195,6 +201,7 @@ impl SimplifyArgs {
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
         options.normals = self.normals;
+        options.tangents = self.tangents;
         options.unfold &= !self.keep_folds;
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
@@ -253,6 +260,9 @@ pub(super) fn run(
         None => simplify_with(&mesh, &resolved, terminal)?,
     };
     run_log::tell(&options.input, triangles_in, &outcome, terminal);
+    if options.tangents == Tangents::Recompute {
+        run_log::tell_tangents(outcome.tangents, terminal);
+    }
     if options.strict {
         require_target(&outcome)?;
     }
@@ -282,6 +292,7 @@ pub(super) fn run(
         triangles_drawn: run_log::triangles_drawn(&mesh, &outcome),
         polish: outcome.polish(),
         normals: outcome.normals,
+        tangents: outcome.tangents,
         comparison: outcome.comparison(),
         notes,
         content_sha256: content_sha256(&outcome.mesh),

@@ -11,7 +11,7 @@
 use serde::Serialize;
 
 use super::{
-    super::{Normals, Options, Outcome, Report, Target, Weights, run::simplify_in_pool},
+    super::{Normals, Options, Outcome, Report, Tangents, Target, Weights, run::simplify_in_pool},
     HeldOutViews, ImageOptions, ImageReport,
 };
 use crate::{Progress, Result, mesh::Mesh, metric::luma::SquaredError};
@@ -75,6 +75,7 @@ impl Contest<'_> {
         let ours = self.held_out.error(&images.mesh)?;
         let options = self.memoryless(triangles);
         let mut plain = options.clone().normals(Normals::Carry);
+        plain.tangents = Tangents::Carry;
         plain.weights.clone_from(&self.start_weights);
         let quick = simplify_in_pool(&self.start, &plain, progress)?;
         let others = self.held_out.error(&quick.mesh)?;
@@ -111,13 +112,14 @@ impl Contest<'_> {
         Ok(images)
     }
 
-    /// The memoryless method as its own defaults have it, with the topology, the concessions, the locks, the weights and
-    /// the normals of the run.
+    /// The memoryless method as its own defaults have it, with the topology, the concessions, the locks, the weights, the
+    /// normals and the tangents of the run.
     fn memoryless(&self, triangles: usize) -> Options {
         let target = Target::triangles(triangles as u64);
         let mut options = Options::new(self.own.placement, target)
             .topology(self.options.rules.topology)
-            .normals(self.options.normals);
+            .normals(self.options.normals)
+            .tangents(self.options.tangents);
         options.rules.concession = self.options.rules.concession;
         options.rules.drop_pieces = self.options.rules.drop_pieces;
         options.locks = self.options.locks;

@@ -13,6 +13,7 @@ pub(crate) mod options;
 pub(crate) mod polish;
 mod progress;
 mod quadric;
+mod tangents;
 mod targets;
 mod tolerance;
 mod view_bounded;
