@@ -68,7 +68,9 @@ pub(super) fn run(args: &BoundRegionArgs, common: &Common, terminal: &Terminal) 
         let told = format!("{what}; {} is none", args.output.display());
         return Err(Error::Usage(told));
     }
-    input::require_outputs([&args.output].into_iter().chain(&common.json))?;
+    let beside = io::written_beside(&args.output);
+    let outputs = [&args.output].into_iter().chain(&beside);
+    input::require_outputs(outputs.chain(&common.json))?;
     let aperture = Aperture::degrees(args.error_deg)?;
     let cell = file::read(&args.cell)?;
     let directions = args.directions.unwrap_or(720);

@@ -27,6 +27,17 @@ pub(super) fn views() -> String {
     )
 }
 
+/// Weights of vertices: a whole file, and a colour channel.
+pub(super) const WEIGHTS: &str = "\
+Weights say where triangles stay: a number from 0 to 1 for every vertex of IN. 1 keeps the vertex where it is, whatever \
+else gives way; w below makes its collapses 1 / (1 - w) times as dear, by whichever method (0.9: ten times). They are a \
+NumPy array of float32 in the order of IN, as many as `lodmark inspect IN` says, or as are left when vertices at one \
+place are united (each then counts where the first is). Two lines of Python write one for 289 vertices:
+  import numpy as np; w = np.zeros(289, 'f4'); w[0:17] = 1; w[17:68] = 0.9
+  np.save('weights.npy', w)
+And then: lodmark simplify IN OUT --ratio 0.1 --weights weights.npy
+Or a channel of the vertex colours that a painter left: --weights COLOR_0.r (or .g, .b, .a; glTF, PLY and OBJ).";
+
 /// Histories of runs.
 pub(super) const HISTORY: &str = "\
 A history is a binary file with every collapse of a run, its options and the hash of its input: `lodmark simplify \

@@ -12,29 +12,44 @@ use crate::{
 
 /// Reads a mesh; `weld` unites vertices whose positions are equal bits. Triangles keep their order and number.
 pub(super) fn read(path: &Path, weld: bool, terminal: &Terminal) -> Result<Mesh> {
-    read_with_notes(path, weld, terminal).map(|(mesh, _)| mesh)
+    read_with_notes(path, weld, terminal).map(|read| read.mesh)
 }
 
-/// As [`read`], with one sentence for everything that the reader could not keep.
-pub(super) fn read_with_notes(
-    path: &Path,
-    weld: bool,
-    terminal: &Terminal,
-) -> Result<(Mesh, Vec<String>)> {
+/// A mesh as a command reads it.
+pub(super) struct Read {
+    pub(super) mesh: Mesh,
+    /// One sentence for everything that the reader could not keep.
+    pub(super) notes: Vec<String>,
+    /// For every vertex that the file stores, its vertex in `mesh`.
+    pub(super) vertices: Vec<u32>,
+}
+
+/// As [`read`], with what else is known.
+pub(super) fn read_with_notes(path: &Path, weld: bool, terminal: &Terminal) -> Result<Read> {
     let loaded = io::read(path)?;
     for note in &loaded.notes {
         terminal.say(&format!("{}: {note}", path.display()));
     }
-    let mesh = if weld {
-        welded(path, loaded.mesh, terminal)
+    let (mesh, vertices) = if weld {
+        welded_with_numbers(path, loaded.mesh, terminal)
     } else {
-        loaded.mesh
+        let numbers = 0..loaded.mesh.positions().len() as u32;
+        (loaded.mesh, numbers.collect())
     };
-    Ok((mesh, loaded.notes))
+    Ok(Read {
+        mesh,
+        notes: loaded.notes,
+        vertices,
+    })
 }
 
 /// A mesh as read from `path`, with vertices whose positions are equal bits united.
 pub(super) fn welded(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
+    welded_with_numbers(path, mesh, terminal).0
+}
+
+/// As [`welded`], with the new number of every vertex.
+fn welded_with_numbers(path: &Path, mesh: Mesh, terminal: &Terminal) -> (Mesh, Vec<u32>) {
     let welded = mesh::weld(mesh);
     if welded.merged > 0 {
         terminal.say(&format!(
@@ -43,12 +58,12 @@ pub(super) fn welded(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
             welded.merged
         ));
     }
-    welded.mesh
+    (welded.mesh, welded.vertices)
 }
 
-/// A mesh as read from `path` in canonical order, without triangles that use a vertex twice.
-pub(super) fn canonical(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
-    let canonical = mesh::canonical(&mesh);
+/// A mesh as read from `path` in canonical order, without triangles that use a vertex twice, and where its vertices were.
+pub(super) fn canonical(path: &Path, mesh: &Mesh, terminal: &Terminal) -> mesh::Canonical {
+    let canonical = mesh::canonical(mesh);
     if canonical.degenerate > 0 {
         terminal.say(&format!(
             "{}: left out {} triangles that use a vertex twice",
@@ -56,7 +71,7 @@ pub(super) fn canonical(path: &Path, mesh: Mesh, terminal: &Terminal) -> Mesh {
             canonical.degenerate
         ));
     }
-    canonical.mesh
+    canonical
 }
 
 /// Refuses a mesh that shows nothing.

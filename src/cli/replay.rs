@@ -39,7 +39,9 @@ pub(super) struct ReplayArgs {
 
 pub(super) fn run(options: &ReplayArgs, common: &Common, terminal: &Terminal) -> Result<Verdict> {
     io::writable_format(&options.output)?;
-    input::require_outputs([&options.output].into_iter().chain(&common.json))?;
+    let beside = io::written_beside(&options.output);
+    let outputs = [&options.output].into_iter().chain(&beside);
+    input::require_outputs(outputs.chain(&common.json))?;
     let bytes = bytes::read(&options.history)?;
     let history = History::from_bytes(&bytes, &options.history)?;
     // A recorded run welded its input or not; the hash of the content tells which.

@@ -246,6 +246,9 @@ fn anchor(live: &LiveMesh, star: &EdgeStar, rules: Rules) -> Result<(Anchor, boo
     if vanishes && (everything || !rules.may_vanish(live, star.ends)) {
         return Err(Refusal::LastTriangle);
     }
+    if star.takes_locked(live, vanishes) {
+        return Err(Refusal::Locked);
+    }
     let free = rules.is_topology_free(live, star.ends);
     if !free {
         topology(star)?;

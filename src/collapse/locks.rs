@@ -1,8 +1,9 @@
-//! Locks: curves of the input whose vertices stay where they are.
+//! Locks: curves of the input whose vertices stay where they are, whatever else gives way. Weights lock single vertices
+//! ([`super::weights`]).
 
 use serde::{Deserialize, Serialize};
 
-use super::{LiveMesh, NONE, wedge};
+use super::{EdgeStar, LiveMesh, NONE, wedge};
 use crate::{mesh::ChannelKind, num::Each};
 
 /// Curves whose vertices keep their places, whatever else gives way.
@@ -25,9 +26,28 @@ impl Locks {
     }
 }
 
+impl EdgeStar {
+    /// True where the collapse would leave a locked vertex without a face, and so without a place in the result; it
+    /// `vanishes` where no face of the star stays.
+    pub(super) fn takes_locked(&self, live: &LiveMesh, vanishes: bool) -> bool {
+        if vanishes && self.ends.iter().any(|&v| live.is_locked(v)) {
+            return true;
+        }
+        let gone = self.faces.iter().filter(|f| !f.survives);
+        let mut beside = gone.clone().flat_map(|f| f.corners);
+        beside.any(|v| {
+            let around = || gone.clone().filter(|f| f.corners.contains(&v)).count();
+            live.is_locked(v) && !self.ends.contains(&v) && around() >= live.valence(v)
+        })
+    }
+}
+
 impl LiveMesh {
-    /// Locks the vertices of the chosen curves and returns how many there are. O(n log n).
-    pub fn lock(&mut self, locks: Locks) -> usize {
+    /// Locks the vertices of the chosen curves besides those that are locked. O(n log n).
+    pub fn lock(&mut self, locks: Locks) {
+        if locks.is_none() {
+            return;
+        }
         for edge in 0..self.edge_ids() {
             if let Some(ends) = self
                 .edge(edge)
@@ -38,6 +58,11 @@ impl LiveMesh {
                 }
             }
         }
+    }
+
+    /// Number of locked vertices.
+    #[must_use]
+    pub fn locked_vertices(&self) -> usize {
         self.locked.iter().filter(|&&locked| locked).count()
     }
 

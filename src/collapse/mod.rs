@@ -38,6 +38,7 @@ mod replay;
 mod star;
 mod tiles;
 pub mod wedge;
+mod weights;
 
 pub use counters::{Counters, Stop};
 pub use edge_star::{BoundaryEdge, EdgeStar, Spoke, StarFace};
@@ -56,3 +57,4 @@ pub use refusal::{Reason, Refusal, Refusals};
 pub use replay::Replay;
 pub use star::{Freedom, Star};
 pub use tiles::{TileOptions, Tileable, Tiling, collapse_in_tiles};
+pub use weights::Price;

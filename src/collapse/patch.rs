@@ -259,6 +259,7 @@ impl LiveMesh {
             self.positions[moved.vertex as usize] = moved.to;
             if let Some(gone) = patch.gone {
                 self.locked[moved.vertex as usize] |= self.locked[gone as usize];
+                self.take_weight(moved.vertex, gone);
             }
         }
     }

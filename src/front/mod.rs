@@ -19,7 +19,7 @@ pub mod options {
     pub use crate::chain::{Levels, Screen};
     pub use crate::metric::report::CompareOptions;
     pub use crate::simplify::{
-        MethodOptions, Normals, Rules, Schedule, Topology,
+        MethodOptions, Normals, Rules, Schedule, Tangents, Topology, Weights,
         image::{DrivingShading, EngineName, ImageOptions, Polish, Size, Start},
         memoryless::{ConstraintOrder, MemorylessOptions, Objective, Placement},
         quadric::{QuadricOptions, Uncertainty, Weighting},
@@ -49,7 +49,7 @@ pub mod reports {
         },
         num::Grid,
         simplify::{
-            NormalsReport, Phase, Report,
+            NormalsReport, Phase, Report, TangentsReport, WeightsReport,
             image::{Comparison as Fallback, ImageReport, PolishCounters},
             tolerance::Guarantee,
             view_bounded::ViewBoundedReport,

@@ -24,4 +24,4 @@ pub use format::{Encoding, Format};
 pub use gltf::{SharedImages, share_images};
 pub use read::{Loaded, read, read_bytes};
 pub use summary::Summary;
-pub use write::{encode, writable_format, write};
+pub use write::{encode, writable_format, write, written_beside};

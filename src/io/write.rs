@@ -1,6 +1,6 @@
 //! The way out: from a mesh to the bytes of a file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{Encoding, Format, flip, gltf, obj, ply, stl};
 use crate::{Error, Result, encode::atomic, mesh::Mesh};
@@ -61,6 +61,15 @@ pub fn writable_format(path: &Path) -> Result<Format> {
             path.display()
         ))
     })
+}
+
+/// The other file that [`write`](fn@write) replaces or makes with `path`: the buffer of a `.gltf`. Probe it before long
+/// work, too. `None` for other formats, and where the buffer gets another name for not being written over a file that
+/// belongs to something else.
+#[must_use]
+pub fn written_beside(path: &Path) -> Option<PathBuf> {
+    let format = Format::of_extension(path)?;
+    (format == Format::Gltf).then(|| gltf::buffer_beside(path))?
 }
 
 impl Mesh {

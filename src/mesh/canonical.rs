@@ -23,6 +23,8 @@ pub struct Canonical {
     pub degenerate: usize,
     /// Vertices that no remaining triangle names: dropped.
     pub unreferenced: usize,
+    /// For every vertex of `mesh`, its number before.
+    pub vertices: Vec<u32>,
 }
 
 /// The canonical form of `mesh`: it does not depend on the order of vertices, triangles, wedges and material names,
@@ -63,6 +65,7 @@ pub fn canonical(mesh: &Mesh) -> Canonical {
         degenerate: mesh.triangles().len() - kept.len(),
         unreferenced: mesh.positions().len() - order.len(),
         mesh: Mesh::new(parts).expect("the parts of a valid mesh in another order"),
+        vertices: order,
     }
 }
 

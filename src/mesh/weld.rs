@@ -11,6 +11,8 @@ pub struct Welded {
     pub mesh: Mesh,
     /// Vertices that were merged into an earlier one.
     pub merged: usize,
+    /// For every vertex before, its vertex in `mesh`.
+    pub vertices: Vec<u32>,
 }
 
 /// Merges vertices with bit-equal positions (`-0` equals `+0`) into the first of each. The vertices that stay keep
@@ -35,7 +37,11 @@ pub fn weld(mesh: Mesh) -> Welded {
     });
     let merged = places.len() - united.firsts.len();
     if merged == 0 {
-        return Welded { mesh, merged };
+        return Welded {
+            mesh,
+            merged,
+            vertices: united.groups,
+        };
     }
     let mut parts = mesh.into_parts();
     parts.positions = united.firsts.iter().map(|&i| parts.positions[i]).collect();
@@ -45,5 +51,6 @@ pub fn weld(mesh: Mesh) -> Welded {
     Welded {
         mesh: Mesh::new(parts).expect("fewer vertices of a valid mesh"),
         merged,
+        vertices: united.groups,
     }
 }

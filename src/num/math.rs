@@ -57,6 +57,11 @@ pub fn asin(x: f64) -> f64 {
     libm::asin(x)
 }
 
+/// Arc cosine, in [0, pi]; NaN beyond -1 and 1.
+pub fn acos(x: f64) -> f64 {
+    libm::acos(x)
+}
+
 /// Cube root.
 pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)

@@ -4,7 +4,7 @@
 //! ended. A method's folder has its `options`, its `run`, its `report` where it tells more than a mesh, and the parts
 //! of the method itself; `methods` lists them. [`memoryless`] and [`quadric`] are the baselines; other methods place
 //! vertices by them: [`mod@image`], [`tolerance`] and [`view_bounded`] by the first, [`visibility`] by the second.
-//! Whatever the method, [`mod@normals`] gives the result its stored normals in the end.
+//! Whatever the method, [`mod@normals`] gives the result its stored normals in the end, and [`mod@tangents`] its tangents.
 
 pub mod billboards;
 mod concessions;
@@ -15,12 +15,15 @@ pub mod normals;
 mod options;
 mod outcome;
 pub mod quadric;
+mod recorded;
 mod repair_folds;
 mod run;
+pub mod tangents;
 mod target;
 pub mod tolerance;
 pub mod view_bounded;
 pub mod visibility;
+mod weights;
 
 /// The history that an [`Outcome`] carries to rebuild any level, the type that rebuilds it, and the enums of
 /// [`Options`].
@@ -30,5 +33,7 @@ pub use normals::{Normals, NormalsReport};
 pub use options::Options;
 pub use outcome::{Outcome, Phase};
 pub use run::{simplify, simplify_with};
+pub use tangents::{Tangents, TangentsReport};
 pub use target::Target;
 pub use visibility::simplify_guided;
+pub use weights::{Weights, WeightsReport};

@@ -8,9 +8,11 @@ use super::{
     memoryless::MemorylessOptions,
     methods::ErrorLimit,
     quadric::QuadricOptions,
+    tangents::Tangents,
     tolerance::ToleranceOptions,
     view_bounded::ViewBoundedOptions,
     visibility::VisibilityOptions,
+    weights::Weights,
 };
 use crate::{
     Error, Result,
@@ -48,6 +50,9 @@ pub struct Options {
     /// Curves of the input whose vertices stay where they are.
     #[serde(default, skip_serializing_if = "Locks::is_none")]
     pub locks: Locks,
+    /// Weights of the vertices of the input: what weighs more keeps more triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Weights>,
     /// When edges are evaluated again.
     pub schedule: Schedule,
     /// Measure the true rank of every n-th collapse among all legal ones; 0 is off. Changes no result.
@@ -63,6 +68,10 @@ pub struct Options {
         skip_serializing_if = "Normals::are_carried"
     )]
     pub normals: Normals,
+    /// The stored tangents of the result. Of a run that is over: [`Tangents::Carry`] where the input has no texture
+    /// coordinates or no normals.
+    #[serde(default, skip_serializing_if = "Tangents::are_carried")]
+    pub tangents: Tangents,
     /// The first step that meant nothing to the method.
     #[serde(skip)]
     pub(crate) foreign: Option<&'static str>,
@@ -82,6 +91,7 @@ impl Options {
             rules: own.rules(),
             per_mesh: false,
             locks: Locks::default(),
+            weights: None,
             schedule: own.schedule(),
             unfold: own.only_orders(),
             method,
@@ -89,6 +99,7 @@ impl Options {
             error_rms: None,
             measure_rank: 0,
             normals: Normals::default(),
+            tangents: Tangents::default(),
             foreign: None,
             settled: false,
         }
@@ -203,6 +214,14 @@ impl Options {
     #[must_use]
     pub fn normals(mut self, normals: Normals) -> Self {
         self.normals = normals;
+        self
+    }
+
+    /// The way in which a result gets its stored tangents; by default it has those that the collapses carried. An input that
+    /// has no more triangles than wanted is copied with its own.
+    #[must_use]
+    pub fn tangents(mut self, tangents: Tangents) -> Self {
+        self.tangents = tangents;
         self
     }
 
@@ -347,6 +366,9 @@ impl Options {
             return Err(Error::Usage(format!(
                 "unfold means nothing to the method `{name}`: it judges every change itself; leave it out"
             )));
+        }
+        if let Some(weights) = &self.weights {
+            weights.check()?;
         }
         require_within("normal-cosine", self.rules.normal_cosine, 0.0, 0.999)?;
         require_within("fold-cosine", self.rules.fold_cosine, -1.0, 0.999)?;

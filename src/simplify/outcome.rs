@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{NormalsReport, Options, Report};
+use super::{NormalsReport, Options, Report, TangentsReport, WeightsReport};
 use crate::{
     collapse::{Concession, Counters, History, Stop},
     mesh::Mesh,
@@ -34,14 +34,18 @@ pub struct Outcome {
     pub history: History,
     /// Why the run ended.
     pub stop: Stop,
-    /// Number of vertices that the locks kept where they are; 0 without locks.
+    /// Number of vertices that the locks kept where they are, those of weight 1 among them; 0 without.
     pub locked_vertices: usize,
+    /// The account of the weights, where some were given.
+    pub weights: Option<WeightsReport>,
     /// The stretches of the run, in order.
     pub phases: Vec<Phase>,
     /// The options as they were used: nothing in them is left to a default.
     pub options: Options,
     /// The price of its normals in vertices, where they are not those that the collapses carried.
     pub normals: Option<NormalsReport>,
+    /// The account of its tangents, where they are not those that the collapses carried.
+    pub tangents: Option<TangentsReport>,
     /// The report of the method.
     pub report: Report,
 }

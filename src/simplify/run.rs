@@ -1,6 +1,9 @@
 //! The shared part of every run: the mesh that is collapsed, its history and its phases.
 
-use super::{MethodOptions, Options, Outcome, Phase, Report, normals, repair_folds::repair_folds};
+use super::{
+    MethodOptions, Options, Outcome, Phase, Report, WeightsReport, normals,
+    repair_folds::repair_folds, tangents,
+};
 use crate::{
     Error, Progress, Result, Silent,
     collapse::{
@@ -102,11 +105,10 @@ impl<'a> Run<'a> {
     ) -> Result<Self> {
         let frame = frame_of(mesh);
         let mut live = LiveMesh::new(mesh, frame);
-        let locked = if options.locks.is_none() {
-            0
-        } else {
-            live.lock(options.locks)
-        };
+        if let Some(weights) = &options.weights {
+            live.weigh(weights.of_mesh(mesh)?);
+        }
+        live.lock(options.locks);
         let count = mesh.triangles().len();
         let mut target = options.target.of(count)?;
         if let Some(triangles) = target.filter(|_| options.per_mesh) {
@@ -115,10 +117,13 @@ impl<'a> Run<'a> {
         }
         Ok(Self {
             mesh,
+            locked: live.locked_vertices(),
             live,
-            locked,
             seen_pieces: None,
-            options: options.clone().normals(options.normals.of(mesh)),
+            options: options
+                .clone()
+                .normals(options.normals.of(mesh))
+                .tangents(options.tangents.of(mesh)),
             target,
             recorder: Recorder::new(mesh, frame),
             phases: Vec::new(),
@@ -258,22 +263,29 @@ impl<'a> Run<'a> {
         options.settled = false;
         let json = serde_json::to_string(&options).map_err(|e| Error::Internal(e.to_string()))?;
         let history = self.recorder.finish(json);
-        let (mesh, normals) = match stop {
-            Stop::TargetAboveInput => (self.mesh.clone(), None),
-            _ if history.is_empty() => (self.live.to_mesh()?, None),
+        let (mesh, normals, tangents) = match stop {
+            Stop::TargetAboveInput => (self.mesh.clone(), None, None),
+            _ if history.is_empty() => (self.live.to_mesh()?, None, None),
             _ => {
                 let carried = self.live.to_mesh()?;
-                normals::settle(self.mesh, carried, options.normals, self.progress)?
+                let (mesh, normals) =
+                    normals::settle(self.mesh, carried, options.normals, self.progress)?;
+                let (mesh, tangents) = tangents::settle(mesh, options.tangents)?;
+                (mesh, normals, tangents)
             }
         };
+        let weights = options.weights.as_ref();
+        let weights = weights.map(|w| WeightsReport::of(w, self.mesh, &self.live, &mesh));
         Ok(Outcome {
             mesh,
             history,
             stop,
             locked_vertices: self.locked,
+            weights,
             phases: self.phases,
             options,
             normals,
+            tangents,
             report,
         })
     }

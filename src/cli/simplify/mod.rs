@@ -5,6 +5,7 @@ mod image_args;
 pub(super) mod option_table;
 mod run_log;
 mod view_bound_args;
+mod weight_args;
 
 use std::{io::Write, path::PathBuf};
 
@@ -21,7 +22,8 @@ use crate::{
     io,
     mesh::content_sha256,
     simplify::{
-        MethodName, Normals, NormalsReport, Options as RunOptions, Stop, Target,
+        MethodName, Normals, NormalsReport, Options as RunOptions, Outcome, Stop, Tangents,
+        TangentsReport, Target, WeightsReport,
         image::{Comparison, PolishCounters},
         simplify_guided, simplify_with,
         tolerance::Guarantee,
@@ -30,10 +32,11 @@ use crate::{
 use distance_args::DistanceArgs;
 use image_args::ImageArgs;
 use view_bound_args::ViewBoundArgs;
+use weight_args::WeightSource;
 
 /// Write a mesh with fewer triangles that looks the same
 #[derive(Debug, clap::Args)]
-#[command(after_long_help = file_help::paragraphs(&[&file_help::cells(), &file_help::views(), file_help::HISTORY, file_help::PARTIAL, file_help::CORRESPONDENCE]))]
+#[command(after_long_help = file_help::paragraphs(&[file_help::WEIGHTS, &file_help::cells(), &file_help::views(), file_help::HISTORY, file_help::PARTIAL, file_help::CORRESPONDENCE]))]
 #[command(group(ArgGroup::new("amount").args(["triangles", "ratio"])))]
 pub(super) struct SimplifyArgs {
     /// The mesh to simplify: .obj, .ply, .stl, .glb or .gltf
@@ -92,11 +95,18 @@ pub(super) struct SimplifyArgs {
     /// Keep the vertices between materials, or between the parts of a document, where they are
     #[arg(long)]
     lock_materials: bool,
+    /// Keep more triangles where vertices weigh more, and those of weight 1 where they are: a .npy file, or a colour channel
+    /// of IN such as COLOR_0.r
+    #[arg(long, value_name = "FILE|CHANNEL", value_parser = weight_args::parse)]
+    weights: Option<WeightSource>,
     #[command(flatten)]
     image: ImageArgs,
     /// The stored normals of the result, where IN has some
     #[arg(long, value_enum, default_value_t = Normals::Fit)]
     normals: Normals,
+    /// The stored tangents of the result
+    #[arg(long, value_enum, default_value_t = Tangents::Carry)]
+    tangents: Tangents,
     /// Planes with uncertainty (Trettner & Kobbelt 2020)
     #[arg(long, hide_short_help = true)]
     probabilistic: bool,
@@ -137,6 +147,9 @@ struct Summary<'a> {
     /// Vertices that locks kept where they are.
     #[serde(skip_serializing_if = "is_zero")]
     locked_vertices: usize,
+    /// What the weights did; only where some were given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weights: Option<WeightsReport>,
     /// Triangles that the scene draws, each as often as its part is shown; only where that is not the number stored.
     #[serde(skip_serializing_if = "Option::is_none")]
     triangles_drawn: Option<[usize; 2]>,
@@ -148,6 +161,9 @@ struct Summary<'a> {
     /// The price of normals that are not the carried ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     normals: Option<NormalsReport>,
+    /// The account of tangents that were made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tangents: Option<TangentsReport>,
     /// Of images and geometry, where they were close.
     #[serde(skip_serializing_if = "Option::is_none")]
     comparison: Option<Comparison>,
@@ -188,6 +204,7 @@ impl SimplifyArgs {
         options.error_rms = self.error_rms;
         options.measure_rank = self.measure_rank;
         options.normals = self.normals;
+        options.tangents = self.tangents;
         options.unfold &= !self.keep_folds;
         options.schedule = self.evaluation.unwrap_or(options.schedule);
         options.rules.topology = self.topology;
@@ -201,6 +218,20 @@ impl SimplifyArgs {
     }
 }
 
+/// Refuses an outcome that is short of its target.
+fn require_target(outcome: &Outcome) -> Result<()> {
+    let own = &outcome.options;
+    let bounded = own.method.is_bounded() && own.target == Target::ErrorOnly;
+    let reached = matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
+    if reached || bounded {
+        return Ok(());
+    }
+    Err(Error::TargetNotReached(format!(
+        "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
+        outcome.mesh.triangles().len()
+    )))
+}
+
 pub(super) fn run(
     options: &SimplifyArgs,
     matches: &ArgMatches,
@@ -208,32 +239,35 @@ pub(super) fn run(
     terminal: &Terminal,
 ) -> Result<Verdict> {
     option_table::refuse_foreign(options.method, matches)?;
-    let resolved = options.resolve()?;
+    let mut resolved = options.resolve()?;
     io::writable_format(&options.output)?;
+    let beside = io::written_beside(&options.output);
     let outputs = [
         Some(&options.output),
+        beside.as_ref(),
         options.history.as_ref(),
         options.view_bound.output(),
         common.json.as_ref(),
     ];
     input::require_outputs(outputs.into_iter().flatten())?;
-    let (mesh, mut notes) = input::read_with_notes(&options.input, !options.no_weld, terminal)?;
-    input::require_triangles(&options.input, &mesh)?;
-    let triangles_in = mesh.triangles().len();
-    let mesh = input::canonical(&options.input, mesh, terminal);
+    let read = input::read_with_notes(&options.input, !options.no_weld, terminal)?;
+    input::require_triangles(&options.input, &read.mesh)?;
+    let triangles_in = read.mesh.triangles().len();
+    let canonical = input::canonical(&options.input, &read.mesh, terminal);
+    if let Some(source) = &options.weights {
+        resolved = resolved.weights(source.read(&options.input, &read, &canonical)?);
+    }
+    let (mesh, mut notes) = (canonical.mesh, read.notes);
     let outcome = match options.guidance.read(&mesh)? {
         Some(visibility) => simplify_guided(&mesh, &resolved, &visibility, terminal)?,
         None => simplify_with(&mesh, &resolved, terminal)?,
     };
     run_log::tell(&options.input, triangles_in, &outcome, terminal);
-    let own = &outcome.options;
-    let bounded = own.method.is_bounded() && own.target == Target::ErrorOnly;
-    let short = !matches!(outcome.stop, Stop::TargetReached | Stop::TargetAboveInput);
-    if options.strict && short && !bounded {
-        return Err(Error::TargetNotReached(format!(
-            "{} triangles are left, more than asked for, and nothing was written; without --strict they would be",
-            outcome.mesh.triangles().len()
-        )));
+    if options.tangents == Tangents::Recompute {
+        run_log::tell_tangents(outcome.tangents, terminal);
+    }
+    if options.strict {
+        require_target(&outcome)?;
     }
     for note in io::write(&options.output, &outcome.mesh)? {
         terminal.say(&format!("{}: {note}", options.output.display()));
@@ -257,9 +291,11 @@ pub(super) fn run(
         guarantee: outcome.guarantee(),
         phases: &outcome.phases,
         locked_vertices: outcome.locked_vertices,
+        weights: outcome.weights,
         triangles_drawn: run_log::triangles_drawn(&mesh, &outcome),
         polish: outcome.polish(),
         normals: outcome.normals,
+        tangents: outcome.tangents,
         comparison: outcome.comparison(),
         notes,
         content_sha256: content_sha256(&outcome.mesh),

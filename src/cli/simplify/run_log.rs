@@ -5,7 +5,9 @@ use std::path::Path;
 use crate::{
     cli::terminal::Terminal,
     mesh::Mesh,
-    simplify::{Normals, NormalsReport, Outcome, Phase, Stop, image::PolishCounters},
+    simplify::{
+        Normals, NormalsReport, Outcome, Phase, Stop, TangentsReport, image::PolishCounters,
+    },
 };
 
 /// Prints phases, guarantees and the way the run ended, in particular where that is short of the target.
@@ -45,6 +47,13 @@ pub(super) fn tell(input: &Path, triangles_in: usize, outcome: &Outcome, termina
             outcome.locked_vertices
         ));
     }
+    if let Some(report) = outcome.weights {
+        terminal.say(&format!(
+            "weights: {} of {} vertices of weight 1 are in the result where they were; mean weight {:.3} of vertices that \
+             stayed, {:.3} of those that are gone",
+            report.held, report.locked, report.mean_kept, report.mean_removed
+        ));
+    }
     if let Some(report) = outcome.normals {
         tell_normals(report, terminal);
     }
@@ -73,6 +82,21 @@ fn tell_normals(report: NormalsReport, terminal: &Terminal) {
         "normals {made}: {} vertices are stored, {} as the collapses left them",
         report.stored_vertices, report.stored_vertices_carried
     ));
+}
+
+/// Tells of tangents that were asked for.
+pub(super) fn tell_tangents(report: Option<TangentsReport>, terminal: &Terminal) {
+    terminal.say(&match report {
+        Some(TangentsReport {
+            triangles,
+            triangles_without,
+            stored_vertices,
+        }) => format!(
+            "tangents recomputed: of {triangles} triangles; {triangles_without} have no texture coordinates or no normals; \
+             {stored_vertices} vertices are stored"
+        ),
+        None => "no tangents were made: the result is a copy, or has no texture coordinates or no normals".into(),
+    });
 }
 
 fn tell_phase(phase: &Phase, terminal: &Terminal) {

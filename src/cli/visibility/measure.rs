@@ -147,7 +147,7 @@ pub(crate) fn run(args: &VisibilityArgs, common: &Common, terminal: &Terminal) -
     };
     let mesh = input::read(&args.input, !args.no_weld, terminal)?;
     input::require_triangles(&args.input, &mesh)?;
-    let mesh = input::canonical(&args.input, mesh, terminal);
+    let mesh = input::canonical(&args.input, &mesh, terminal).mesh;
     input::require_triangles(&args.input, &mesh)?;
     let resolved = serde_json::json!({ "input": args.input, "measurement": measurement });
     if let (Some(range), Some(path)) = (&args.view_range, &args.partial) {
@@ -257,10 +257,13 @@ fn check_outputs(
             path.display()
         )));
     }
+    let mut beside = None;
     if let Some(path) = &options.remove_hidden {
         io::writable_format(path)?;
+        beside = io::written_beside(path);
     }
     let single = [
+        &beside,
         &options.out,
         &options.table,
         &options.remove_hidden,

@@ -202,10 +202,11 @@ impl Queue {
     }
 }
 
-/// The key of a proposal for an edge; `None` where the id is not in use.
+/// The key of a proposal for an edge, dearer by the weights of its ends; `None` where the id is not in use.
 pub(super) fn key(live: &LiveMesh, id: u32, proposal: &Proposal) -> Option<Key> {
+    let price = live.price(live.edge(id)?);
     Some(Key {
-        primary: proposal.primary,
+        primary: price.map_or(proposal.primary, |p| p.of_count(proposal.primary)),
         ..estimated_key(live, id, proposal.secondary)?
     })
 }
@@ -213,10 +214,11 @@ pub(super) fn key(live: &LiveMesh, id: u32, proposal: &Proposal) -> Option<Key> 
 fn estimated_key(live: &LiveMesh, id: u32, cost: f64) -> Option<Key> {
     let edge = live.edge(id)?;
     let d = live.position(edge[1]) - live.position(edge[0]);
+    let (length2, price) = (d.dot(d), live.price(edge));
     Some(Key {
         primary: 0,
-        secondary: cost,
-        length2: d.dot(d),
+        secondary: price.map_or(cost, |p| p.of(cost)),
+        length2: price.map_or(length2, |p| p.of(length2)),
         edge,
     })
 }

@@ -53,6 +53,8 @@ pub struct LiveMesh {
     free_edges: Vec<u32>,
     edges_at: IncidenceLists<Incident>,
     pub(super) locked: Vec<bool>,
+    /// The weight of every vertex, where any is above 0; see [`super::weights`].
+    pub(super) weights: Vec<f32>,
     /// Vertices of pieces that may vanish; empty where there are none.
     expendable: Vec<bool>,
     /// Vertices whose faces are not all here, where there are any; see [`super::tiles`].

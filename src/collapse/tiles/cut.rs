@@ -82,8 +82,10 @@ fn split(live: &LiveMesh, ids: &mut [u32], most: usize, first: f64, boxes: &mut 
 }
 
 impl LiveMesh {
-    /// True where nothing but positions and triangles matters: no attributes, no borders of materials, no locks.
+    /// True where nothing but positions and triangles matters: no attributes, no borders of materials, no locks, no
+    /// weights.
     pub(super) fn is_plain(&self) -> bool {
-        !self.may_have_features() && self.wedges.is_empty() && !self.locked.contains(&true)
+        let held = self.locked.contains(&true) || !self.weights.is_empty();
+        !self.may_have_features() && self.wedges.is_empty() && !held
     }
 }

@@ -95,7 +95,7 @@ struct TileCollapse {
 /// Collapses edges of `live` in rounds down to what one queue takes, or to the wanted number of triangles where that is
 /// reached before.
 ///
-/// Meshes with attributes, materials or locks are left alone, and so are all where the method keeps no
+/// Meshes with attributes, materials, locks or weights are left alone, and so are all where the method keeps no
 /// [estimates](Estimates). `counters` goes on counting.
 ///
 /// # Errors

@@ -22,7 +22,7 @@ mod write;
 use std::{path::Path, sync::Arc};
 
 pub use self::write::{SharedImages, share_images};
-pub(in crate::rooms::io) use self::write::{encode, write};
+pub(in crate::rooms::io) use self::write::{buffer_beside, encode, write};
 use self::{attributes::Channels, buffers::Views, document::Document};
 use crate::{
     Error, Result,

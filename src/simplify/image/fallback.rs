@@ -11,7 +11,7 @@
 use serde::Serialize;
 
 use super::{
-    super::{Normals, Options, Outcome, Report, Target, run::simplify_in_pool},
+    super::{Normals, Options, Outcome, Report, Tangents, Target, Weights, run::simplify_in_pool},
     HeldOutViews, ImageOptions, ImageReport,
 };
 use crate::{Progress, Result, mesh::Mesh, metric::luma::SquaredError};
@@ -54,6 +54,8 @@ pub(super) struct Contest<'a> {
     pub(super) options: Options,
     /// The mesh that images started from, in file units.
     pub(super) start: Mesh,
+    /// The weights of its vertices, where there are some.
+    pub(super) start_weights: Option<Weights>,
 }
 
 impl Contest<'_> {
@@ -72,7 +74,9 @@ impl Contest<'_> {
         }
         let ours = self.held_out.error(&images.mesh)?;
         let options = self.memoryless(triangles);
-        let plain = options.clone().normals(Normals::Carry);
+        let mut plain = options.clone().normals(Normals::Carry);
+        plain.tangents = Tangents::Carry;
+        plain.weights.clone_from(&self.start_weights);
         let quick = simplify_in_pool(&self.start, &plain, progress)?;
         let others = self.held_out.error(&quick.mesh)?;
         if below(ours, others, PLAIN) && others.rms() >= PLAINLY_RESOLVED {
@@ -108,16 +112,18 @@ impl Contest<'_> {
         Ok(images)
     }
 
-    /// The memoryless method as its own defaults have it, with the topology, the concessions, the locks and the normals of
-    /// the run.
+    /// The memoryless method as its own defaults have it, with the topology, the concessions, the locks, the weights, the
+    /// normals and the tangents of the run.
     fn memoryless(&self, triangles: usize) -> Options {
         let target = Target::triangles(triangles as u64);
         let mut options = Options::new(self.own.placement, target)
             .topology(self.options.rules.topology)
-            .normals(self.options.normals);
+            .normals(self.options.normals)
+            .tangents(self.options.tangents);
         options.rules.concession = self.options.rules.concession;
         options.rules.drop_pieces = self.options.rules.drop_pieces;
         options.locks = self.options.locks;
+        options.weights.clone_from(&self.options.weights);
         options.per_mesh = self.options.per_mesh;
         options.settled = true;
         options

@@ -9,7 +9,7 @@ use crate::{
     collapse::{LiveMesh, Observer, Patch, Recorder, Rules, Schedule, Tiling},
     parallel,
     simplify::{
-        Normals, Outcome, Report,
+        Normals, Outcome, Report, Weights,
         memoryless::Memoryless,
         methods::{ErrorLimit, MethodRun},
         repair_folds::repair_folds,
@@ -68,6 +68,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
     }
     .into();
     // (2) Collapses by images.
+    let weighed = run.options.weights.is_some();
     let contest = |held_out| -> Result<_> {
         Ok(Contest {
             own,
@@ -75,6 +76,7 @@ fn by_images(own: &ImageOptions, mut run: Run<'_>) -> Result<Outcome> {
             mesh,
             options: run.options.clone(),
             start: run.live.to_mesh()?,
+            start_weights: weighed.then(|| Weights::new(run.live.weights_in_use())),
         })
     };
     let contest = original.take_held_out().map(contest).transpose()?;

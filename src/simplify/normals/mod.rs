@@ -21,9 +21,14 @@ mod rows;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+pub(super) use self::rows::stored_vertices;
 use self::{face::Faces, groups::Groups, moments::Moments};
+use super::{
+    recorded::recorded,
+    tangents::{self, Tangents},
+};
 use crate::{
-    Error, Progress, Result,
+    Progress, Result,
     collapse::History,
     mesh::{ChannelKind, Mesh},
     num::Each,
@@ -75,23 +80,6 @@ impl Normals {
             None => Self::Carry,
         }
     }
-
-    /// The way of a recorded run, from its options.
-    fn recorded(history: &History) -> Result<Self> {
-        let options = &history.header().options;
-        let Ok(serde_json::Value::Object(options)) = serde_json::from_str(options) else {
-            return Ok(Self::Carry);
-        };
-        let Some(named) = options.get("normals") else {
-            return Ok(Self::Carry);
-        };
-        Self::deserialize(named).map_err(|_| {
-            Error::input(
-                "-",
-                format!("the history was recorded with the normals {named}, which this version does not know"),
-            )
-        })
-    }
 }
 
 /// The price of normals: vertices as files with one row of attributes per vertex store them, which are the different
@@ -111,7 +99,7 @@ pub struct NormalsReport {
 /// materials must be numbered alike in both meshes. O(n log n).
 ///
 /// # Errors
-/// [`Error::Interrupted`].
+/// [`Error::Interrupted`](crate::Error::Interrupted).
 pub fn settle(
     original: &Mesh,
     simplified: Mesh,
@@ -121,7 +109,7 @@ pub fn settle(
     if normals.of(&simplified) == Normals::Carry {
         return Ok((simplified, None));
     }
-    let carried = rows::stored_vertices(&simplified);
+    let carried = stored_vertices(&simplified);
     let mesh = match normals {
         Normals::Drop => rows::without_normals(simplified)?,
         Normals::Recompute => {
@@ -137,22 +125,26 @@ pub fn settle(
     let report = NormalsReport {
         normals,
         stored_vertices_carried: carried,
-        stored_vertices: rows::stored_vertices(&mesh),
+        stored_vertices: stored_vertices(&mesh),
     };
     Ok((mesh, Some(report)))
 }
 
-/// Gives the level of a recorded run the normals that a run to it ends with.
+/// Gives the level of a recorded run the normals and the tangents that a run to it ends with.
 ///
 /// # Errors
-/// [`Error::Input`] where the history names normals that nobody knows; [`Error::Interrupted`].
+/// [`Error::Input`](crate::Error::Input) where the history names normals or tangents that nobody knows;
+/// [`Error::Interrupted`](crate::Error::Interrupted).
 pub fn settle_level(
     original: &Mesh,
     level: Mesh,
     history: &History,
     progress: &dyn Progress,
 ) -> Result<Mesh> {
-    settle(original, level, Normals::recorded(history)?, progress).map(|(mesh, _)| mesh)
+    let normals = recorded(history, "normals")?.unwrap_or(Normals::Carry);
+    let tangents = recorded(history, "tangents")?.unwrap_or(Tangents::Carry);
+    let (level, _) = settle(original, level, normals, progress)?;
+    tangents::settle(level, tangents).map(|(mesh, _)| mesh)
 }
 
 fn fitted(original: &Mesh, simplified: Mesh, progress: &dyn Progress) -> Result<Mesh> {

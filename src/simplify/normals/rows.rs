@@ -81,7 +81,7 @@ fn remade(mesh: Mesh, attributes: Attributes) -> Result<Mesh> {
 }
 
 /// The number of different pairs of vertex and row. O(n log n).
-pub(super) fn stored_vertices(mesh: &Mesh) -> usize {
+pub(in crate::rooms::simplify) fn stored_vertices(mesh: &Mesh) -> usize {
     let attributes = mesh.attributes();
     let rows = group_equal(attributes.wedge_count(), &|a, b| {
         compare_rows(attributes.row(a as u32), attributes.row(b as u32))

@@ -1,5 +1,6 @@
 //! The command as a user runs it.
 
+mod beside;
 mod bound;
 mod compare;
 mod exit_codes;
@@ -10,3 +11,4 @@ mod normals;
 mod odd_files;
 mod replay;
 mod visibility;
+mod weights;

@@ -54,8 +54,7 @@ pub(in crate::rooms::io) fn write(path: &Path, mesh: &Mesh, format: Format) -> R
     let mut written = document(mesh, false)?;
     let mut uri = String::new();
     if !written.binary.is_empty() {
-        let stem = path.file_stem().unwrap_or(OsStr::new("buffer"));
-        let name = PathBuf::from(format!("{}.bin", stem.to_string_lossy()));
+        let name = buffer_name(path);
         // Where the document is replaced, so is its buffer; any other file stays.
         let name = free_name(folder, &name, &written.binary, path.exists());
         atomic::write(&folder.join(&name), |file| file.write_all(&written.binary))?;
@@ -73,6 +72,19 @@ pub(in crate::rooms::io) fn write(path: &Path, mesh: &Mesh, format: Format) -> R
 pub(super) fn lies_in(asset: &Asset, folder: &Path) -> bool {
     let real = |folder: &Path| fs::canonicalize(or_here(folder)).ok();
     real(&asset.folder).is_some_and(|there| Some(there) == real(folder))
+}
+
+/// The file for the buffer of a document at `path`, as far as that is known before the buffer is: `None` where a file of
+/// that name belongs to something else, so that the buffer gets another name.
+pub(in crate::rooms::io) fn buffer_beside(path: &Path) -> Option<PathBuf> {
+    let buffer = path.with_file_name(buffer_name(path));
+    let is_others = buffer.is_file() && !path.exists();
+    (!is_others).then_some(buffer)
+}
+
+fn buffer_name(path: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or(OsStr::new("buffer"));
+    PathBuf::from(format!("{}.bin", stem.to_string_lossy()))
 }
 
 /// Whether the first buffer lies in the document's own file.

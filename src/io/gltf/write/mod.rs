@@ -32,7 +32,7 @@ use crate::{
     mesh::{Asset, Mesh},
 };
 
-pub(in crate::rooms::io) use files::{encode, write};
+pub(in crate::rooms::io) use files::{buffer_beside, encode, write};
 pub use share::{SharedImages, share_images};
 
 const DRACO: &str = "KHR_draco_mesh_compression";
