@@ -129,6 +129,7 @@ fn recipes() -> [ImageOptions; 7] {
             flips_every: 1,
             cameras_every: 2,
             deviation_weight: 0.3,
+            least_share: 0.0,
         },
         fall_back: false,
         ..Preset::Default.options()

@@ -20,9 +20,14 @@ pub(super) struct Corner {
     pub(super) class: usize,
 }
 
-/// For every class, whether it has a corner of a face that the texture shows as it is, and the first corner of one that it
-/// shows mirrored.
-pub(super) type Sides = Vec<(bool, Option<usize>)>;
+/// The sides from which the texture shows the faces of a class.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Side {
+    /// Some face is shown as it is.
+    upright: bool,
+    /// The first corner of a face that is not shown mirrored, and the first of one that is.
+    firsts: [Option<usize>; 2],
+}
 
 /// Corners that are compared pair by pair; more are sorted, so that those around a hub do not cost their square.
 const FEW: usize = 48;
@@ -51,7 +56,7 @@ pub(super) fn divide(
     star: &EdgeStar,
     channel: Channel,
     corners: &mut [Corner],
-    sides: &mut Sides,
+    sides: &mut Vec<Side>,
 ) {
     classify(live.rows(), channel, corners);
     if matches!(channel.kind, ChannelKind::TexCoord(_)) {
@@ -66,27 +71,26 @@ fn part_mirrored(
     star: &EdgeStar,
     channel: Channel,
     corners: &mut [Corner],
-    sides: &mut Sides,
+    sides: &mut Vec<Side>,
 ) {
     let area = |c: &Corner| {
         let wedges = live.wedges(star.faces[c.face].id);
         texture_area(live.rows(), channel, wedges)
     };
     sides.clear();
-    sides.resize(corners.len(), (false, None));
+    sides.resize(corners.len(), Side::default());
     for (i, corner) in corners.iter().enumerate() {
-        let (upright, mirrored) = &mut sides[corner.class];
+        let side = &mut sides[corner.class];
         let area = area(corner);
-        *upright |= area > 0.0;
-        if area < 0.0 {
-            mirrored.get_or_insert(i);
-        }
+        side.upright |= area > 0.0;
+        let first = &mut side.firsts[usize::from(area < 0.0)];
+        first.get_or_insert(i);
     }
     for corner in corners {
-        if let (true, Some(first)) = sides[corner.class]
-            && area(corner) < 0.0
-        {
-            corner.class = first;
+        let side = sides[corner.class];
+        if let (true, [_, Some(_)]) = (side.upright, side.firsts) {
+            let first = side.firsts[usize::from(area(corner) < 0.0)];
+            corner.class = first.unwrap_or(corner.class);
         }
     }
 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::{
     Blend, WedgeRows,
-    classes::{Corner, Sides, compare_bits, corners_of, divide},
+    classes::{Corner, Side, compare_bits, corners_of, divide},
     coordinates::{self, ChartFace},
     makes_features,
     oriented_volume::Otherwise,
@@ -34,7 +34,7 @@ pub(in crate::rooms::collapse) struct WedgeScratch {
     values: Vec<f64>,
     /// For every class, the first wedge of a corner at either end of the edge.
     firsts: Vec<[Option<u32>; 2]>,
-    sides: Sides,
+    sides: Vec<Side>,
     /// The faces of one class.
     chart: Vec<ChartFace>,
     /// The corners of one class.

@@ -18,6 +18,9 @@ use crate::{
 /// Most samples of all driving images together; every one takes some ten bytes throughout the run.
 const PIXEL_LIMIT: u64 = 1 << 27;
 
+/// Most collapses by pictures where a recipe says where they begin.
+const MOST_COLLAPSES: usize = 20_000;
+
 /// The size at which the image-driven part of a run begins; the memoryless method gets there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -26,7 +29,8 @@ pub enum Start {
     /// times, as there for the dragon; 65,536 where only an error limits the run.
     #[default]
     Auto,
-    /// This many times the target; as `Auto` where only an error limits the run.
+    /// This many times the target, but at most 20,000 triangles above it: of a large mesh pictures tell the last collapses
+    /// apart, and hardly the first. As `Auto` where only an error limits the run.
     Times(f64),
     /// At this number of triangles.
     Triangles(u64),
@@ -41,7 +45,9 @@ impl Start {
     pub fn triangles(self, target: Option<usize>) -> usize {
         match (self, target) {
             (Self::Auto | Self::Times(_), None) => 65_536,
-            (Self::Times(n), Some(target)) => (n * target as f64) as usize,
+            (Self::Times(n), Some(target)) => {
+                ((n * target as f64) as usize).min(target.saturating_add(MOST_COLLAPSES))
+            }
             (Self::Auto, Some(target)) => target
                 .saturating_mul(10)
                 .min(target.saturating_mul(4).max(32_768)),
@@ -58,10 +64,12 @@ pub enum Size {
     /// A number of pixels, 1 to 4096.
     Pixels(u32),
     /// A number of pixels for every triangle of the target, besides those of a square of [`Size::LEAST`]; a multiple of 8
-    /// and at most [`Size::MOST`] along each side.
+    /// and at most [`Size::MOST`] along each side. See [`Size::sampled`].
     PerTriangle {
         /// Pixels for a triangle.
         per_triangle: u32,
+        /// Most samples along each side.
+        most_samples: u32,
     },
 }
 
@@ -78,12 +86,28 @@ impl Size {
         match (self, target) {
             (Self::Pixels(n), _) => n,
             (Self::PerTriangle { .. }, None) => Self::MOST,
-            (Self::PerTriangle { per_triangle }, Some(target)) => {
+            (Self::PerTriangle { per_triangle, .. }, Some(target)) => {
                 let own = u64::from(per_triangle).saturating_mul(target as u64);
                 let area = own.saturating_add(u64::from(Self::LEAST).pow(2));
                 let side = area.min(u64::from(Self::MOST).pow(2)).isqrt() as u32;
                 side / 8 * 8
             }
+        }
+    }
+}
+
+impl Size {
+    /// The side in pixels for a target, and the samples in a pixel along each axis, at most `samples`. A size that
+    /// follows from the target has no more samples along a side than it says: beyond that a pixel is a sample. With
+    /// so many, smaller pixels show more than those that are better sampled.
+    #[must_use]
+    pub fn sampled(self, target: Option<usize>, samples: u32) -> [u32; 2] {
+        let side = self.pixels(target);
+        match (self, target) {
+            (Self::PerTriangle { most_samples, .. }, Some(_)) if side * samples > most_samples => {
+                [most_samples.min(Self::MOST), 1]
+            }
+            _ => [side, samples],
         }
     }
 }
@@ -160,7 +184,7 @@ pub struct ImageOptions {
     pub views: ViewsName,
     /// Width and height of every image; all views together have at most 2^27 samples.
     pub size: Size,
-    /// Samples in a pixel along each axis: 1, 2 or 4.
+    /// Samples in a pixel along each axis: 1, 2 or 4, at most where the size follows from the target.
     #[serde(default = "one")]
     pub samples: u32,
     /// Flat, Gouraud, some of each, or lit.
@@ -246,7 +270,8 @@ impl ImageOptions {
     /// that the preset has for it.
     pub(super) fn resolved(&self, target: Option<usize>, mesh: &Mesh) -> Self {
         let mut own = self.clone();
-        own.size = Size::Pixels(self.size.pixels(target));
+        let [side, samples] = self.size.sampled(target, self.samples);
+        (own.size, own.samples) = (Size::Pixels(side), samples);
         let named = !matches!(self.views, ViewsName::File(_));
         let stored = mesh.attributes().channel(ChannelKind::Normal);
         own.follow(

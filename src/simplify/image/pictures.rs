@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::{EngineName, ReferenceImages, slots::Slots};
 use crate::{
-    collapse::{LiveMesh, Patch},
+    collapse::{LiveMesh, NONE, Patch},
     num::{
         Each,
         math::{sqrt, unit},
@@ -30,6 +30,8 @@ use crate::{
 #[derive(Debug)]
 pub struct Pictures {
     engine: Box<dyn Unrender>,
+    /// The luma sums of the original's pictures.
+    reference: Vec<Grid<u16>>,
     slots: Slots,
     /// A view is flat shaded.
     flat: bool,
@@ -64,6 +66,7 @@ impl Pictures {
         };
         let mut pictures = Self {
             engine,
+            reference: sums.to_vec(),
             slots,
             flat: shaded(Interpolation::Flat),
             gouraud: shaded(Interpolation::Gouraud),
@@ -72,18 +75,59 @@ impl Pictures {
             pixels: set.views.len() as u64 * u64::from(set.width) * u64::from(set.height),
             samples: set.samples * set.samples,
         };
-        pictures.sum = pictures.sum_from_scratch(reference);
+        let views = 0..pictures.views;
+        pictures.sum = views
+            .map(|i| pictures.squares(i).values().iter().sum::<u64>())
+            .sum();
         pictures
     }
 
-    /// The sum of squared differences between the engine's pictures and those of the original.
-    fn sum_from_scratch(&self, reference: &ReferenceImages) -> u64 {
-        let view = |(i, y0): (usize, &Grid<u16>)| -> u64 {
-            let sums = raster::sum_samples(&self.engine.luma(i), reference.set().samples);
-            let pairs = y0.values().iter().zip(sums.values());
-            pairs.map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2)).sum()
+    /// The squared difference of every pixel of a view from the original's.
+    fn squares(&self, view: usize) -> Grid<u64> {
+        let sums = raster::sum_samples(&self.engine.luma(view), self.samples.isqrt());
+        let mut y0 = self.reference[view].values().iter();
+        sums.map(|y| y0.next().map_or(0, |&y0| u64::from(y.abs_diff(y0)).pow(2)))
+    }
+
+    /// The error of the pixels in which every triangle is seen, by triangle id, in units of [`Pictures::sum`] times the
+    /// samples of a pixel: a pixel's squared difference for each of its samples. A sample that shows the background
+    /// counts for the triangles beside it: their silhouette is not where it should be. O(samples of all views).
+    pub fn errors(&self, live: &LiveMesh) -> Vec<u64> {
+        let mut by_slot = vec![0; self.slots.triangle_count()];
+        let samples = self.samples.isqrt();
+        for view in 0..self.views {
+            let (squares, keys) = (self.squares(view), self.engine.keys(view));
+            let [width, height] = [keys.width(), keys.height()];
+            for y in 0..height {
+                for x in 0..width {
+                    let square = squares.at(x / samples, y / samples);
+                    if square == 0 {
+                        continue;
+                    }
+                    let key = keys.at(x, y);
+                    if !key.is_background() {
+                        by_slot[key.id() as usize] += square;
+                        continue;
+                    }
+                    let beside = [
+                        (x > 0).then(|| (x - 1, y)),
+                        (x + 1 < width).then_some((x + 1, y)),
+                        (y > 0).then(|| (x, y - 1)),
+                        (y + 1 < height).then_some((x, y + 1)),
+                    ];
+                    for key in beside.into_iter().flatten().map(|(x, y)| keys.at(x, y)) {
+                        if !key.is_background() {
+                            by_slot[key.id() as usize] += square;
+                        }
+                    }
+                }
+            }
+        }
+        let error = |id: u32| match self.slots.triangles[id as usize] {
+            NONE => 0,
+            slot => by_slot[slot as usize],
         };
-        reference.sums().iter().enumerate().map(view).sum()
+        (0..live.triangle_ids()).map(error).collect()
     }
 
     /// Sum over views and pixels of the squared luma differences, in squared levels over `samples^4`.

@@ -37,23 +37,30 @@ impl Preset {
     /// The options of the recipe.
     #[must_use]
     pub fn options(self) -> ImageOptions {
-        let recipe = |views, per_triangle, start, swept_weight, polish| ImageOptions {
-            preset: self,
-            views: ViewsName::Spiral(views),
-            size: Size::PerTriangle { per_triangle },
-            // Better than more pixels: polishing fits the noise of pictures with one sample.
-            samples: 2,
-            shading: DrivingShading::Auto,
-            start: Start::Times(start),
-            swept_weight,
-            // Less than half of the drawing before polishing, for less than 0.4 % of error and distance either way.
-            view_stride: 3,
-            polish,
-            fall_back: true,
-            ..Self::Paper.options()
-        };
-        let polish = |sweeps, cameras_every, deviation_weight| Polish {
+        let recipe =
+            |views, [per_triangle, most_samples]: [u32; 2], start, swept_weight, polish| {
+                ImageOptions {
+                    preset: self,
+                    views: ViewsName::Spiral(views),
+                    size: Size::PerTriangle {
+                        per_triangle,
+                        most_samples,
+                    },
+                    // Better than more pixels: polishing fits the noise of pictures with one sample.
+                    samples: 2,
+                    shading: DrivingShading::Auto,
+                    start: Start::Times(start),
+                    swept_weight,
+                    // Less than half of the drawing before polishing, for less than 0.4 % of error and distance either way.
+                    view_stride: 3,
+                    polish,
+                    fall_back: true,
+                    ..Self::Paper.options()
+                }
+            };
+        let polish = |sweeps, cameras_every, deviation_weight, least_share| Polish {
             sweeps,
+            least_share,
             flips_every: 1,
             cameras_every,
             deviation_weight,
@@ -75,11 +82,11 @@ impl Preset {
                 polish: Polish::default(),
                 fall_back: false,
             },
-            Self::Fast => recipe(30, 1, 1.3, 0.7, polish(1, 0, 1.0)),
+            Self::Fast => recipe(30, [1, 256], 1.3, 0.7, polish(1, 0, 1.0, 1.5e-4)),
             // The dragon at 8,191 triangles: flat RMS 8.40, mean distance 0.0235 % of the diagonal (memoryless: 10.05,
             // 0.0236).
-            Self::Default => recipe(42, 4, 2.2, 0.95, polish(2, 0, 1.0)),
-            Self::Best => recipe(56, 9, 2.5, 0.2, polish(8, 3, 0.25)),
+            Self::Default => recipe(42, [4, 256], 2.2, 0.95, polish(2, 0, 1.0, 1.5e-4)),
+            Self::Best => recipe(56, [9, 512], 2.5, 0.2, polish(8, 3, 0.25, 1e-5)),
         }
     }
 }
@@ -125,7 +132,7 @@ impl ImageOptions {
         follow!(self, old, new; views size samples specular interior_views start engine placement);
         follow!(self, old, new; swept_weight view_stride fall_back);
         let (own, old, new) = (&mut self.polish, old.polish, new.polish);
-        follow!(own, old, new; sweeps flips_every cameras_every deviation_weight);
+        follow!(own, old, new; sweeps flips_every cameras_every deviation_weight least_share);
     }
 }
 

@@ -322,14 +322,38 @@ fn a_method_without_images_refuses_an_error_measured_on_them() {
 }
 
 #[test]
+fn a_recipe_has_no_more_samples_along_a_side_than_it_says() {
+    let size = |most_samples| Size::PerTriangle {
+        per_triangle: 4,
+        most_samples,
+    };
+    for target in [1, 1_000, 3_000, 4_000, 20_000, 1_000_000] {
+        let side = size(256).pixels(Some(target));
+        let [own, samples] = size(256).sampled(Some(target), 2);
+        assert!(
+            own * samples <= 256 && own >= side,
+            "{target}: {own}, {samples}"
+        );
+        assert_eq!(samples == 2, side <= 128, "{target}");
+        assert_eq!(size(512).sampled(Some(target), 2), [side, 2]);
+    }
+    assert_eq!(Size::Pixels(300).sampled(Some(9), 2), [300, 2]);
+    assert_eq!(size(256).sampled(None, 2), [Size::MOST, 2], "no target");
+}
+
+#[test]
 fn one_triangle_is_a_target_like_any_other() {
     let of = |target| {
-        let size = Size::PerTriangle { per_triangle: 9 };
+        let size = Size::PerTriangle {
+            per_triangle: 9,
+            most_samples: 512,
+        };
         (size.pixels(target), Start::Times(2.2).triangles(target))
     };
     assert_eq!(of(Some(1)), (Size::LEAST, 2));
     assert_eq!(of(None), (Size::MOST, 65_536), "only an error limits it");
     assert_eq!(Start::Auto.triangles(Some(1)), 10);
+    assert_eq!(Start::Times(2.2).triangles(Some(30_000)), 50_000);
     let mesh = canonical(&generate::icosphere(1)).mesh;
     let used = |options: Options| {
         let outcome = simplify::simplify(&mesh, &options).expect("simplified");

@@ -8,6 +8,7 @@ use lodmark::{
         flip,
     },
     mesh::{Attributes, ChannelKind, Edges, Mesh, MeshParts, canonical, generate},
+    raster,
     simplify::{
         MethodOptions, Options, Outcome, Target,
         image::{
@@ -27,7 +28,7 @@ use crate::{
         image::{error, meshes, reference, view_sets},
         options::SHADINGS,
     },
-    support::{StopsAfter, faults, framed, live, meshes, same_on_all_threads, snapshot},
+    support::{StopsAfter, faults, framed, live, meshes, same_on_all_threads, scene_of, snapshot},
 };
 
 pub(crate) const THREE: Polish = Polish {
@@ -35,6 +36,7 @@ pub(crate) const THREE: Polish = Polish {
     flips_every: 1,
     cameras_every: 0,
     deviation_weight: 0.0,
+    least_share: 0.0,
 };
 
 /// Polishes with cameras that stay; nobody interrupts.
@@ -99,6 +101,83 @@ impl Observer for Falling<'_> {
     }
 }
 
+/// The error of every triangle by pictures drawn from scratch: a pixel's squared difference for each of its samples that
+/// shows the triangle, or the background beside it.
+fn errors_from_scratch(original: &Mesh, live: &LiveMesh, set: &ViewSet) -> Vec<u64> {
+    let (first, now) = (scene_of(original), scene_of(&snapshot(live)));
+    let s = set.samples as i64;
+    let mut errors = vec![0_u64; live.triangle_ids() as usize];
+    // Triangles are numbered without gaps in the order of their ids.
+    let ids: Vec<usize> = (0..live.triangle_ids())
+        .filter(|&t| live.triangle(t).is_some())
+        .map(|t| t as usize)
+        .collect();
+    for view in &set.views {
+        let [a, b] = [&first, &now].map(|scene| raster::luma_sums(scene, view, set));
+        let shown = raster::ids(&raster::keys(&now, view, set));
+        let at = |x: i64, y: i64| {
+            let inside = x >= 0 && y >= 0 && x < shown.width() as i64 && y < shown.height() as i64;
+            if inside {
+                shown.at(x as u32, y as u32)
+            } else {
+                0
+            }
+        };
+        for y in 0..shown.height() as i64 {
+            for x in 0..shown.width() as i64 {
+                let pixel = ((x / s) as u32, (y / s) as u32);
+                let [a, b] = [&a, &b].map(|sums| i64::from(sums.at(pixel.0, pixel.1)));
+                let square = ((a - b) * (a - b)) as u64;
+                let beside = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
+                let counted = match at(x, y) {
+                    0 => beside.map(|(x, y)| at(x, y)),
+                    id => [id, 0, 0, 0],
+                };
+                for id in counted.into_iter().filter(|&id| id > 0) {
+                    errors[ids[id as usize - 1]] += square;
+                }
+            }
+        }
+    }
+    errors
+}
+
+#[test]
+fn the_error_of_a_triangle_is_that_of_the_samples_that_show_it() {
+    for (name, mesh) in meshes() {
+        let (frame, original, sphere) = framed(&mesh);
+        let worse = pushed(&mesh, 0.06, 3);
+        for (views, set) in view_sets(&sphere) {
+            let live = LiveMesh::new(&worse, frame);
+            let pictures = Pictures::new(&reference(&original, &set), &live, EngineName::Layers);
+            let found = pictures.errors(&live);
+            let expected = errors_from_scratch(&original, &live, &set);
+            assert_eq!(found, expected, "{name}, {views}");
+        }
+    }
+}
+
+#[test]
+fn only_stars_that_hold_their_share_of_the_error_are_tried() {
+    let mesh = canonical(&generate::torus(1.0, 0.4, 20, 12)).mesh;
+    let (_, _, sphere) = framed(&mesh);
+    let worse = pushed(&mesh, 0.06, 5);
+    let (_, set) = view_sets(&sphere).into_iter().next().expect("a set");
+    let with = |least_share| {
+        let options = Polish {
+            least_share,
+            ..THREE
+        };
+        let (live, before, pictures, counters) =
+            polished(EngineName::Layers, &mesh, &worse, &set, options, &mut ());
+        assert!(pictures.sum() <= before);
+        (live.to_mesh().expect("a mesh"), counters)
+    };
+    let (all, few, none) = (with(0.0), with(0.02), with(2.0));
+    assert!(0 < few.1.evaluations && few.1.evaluations < all.1.evaluations / 2);
+    assert_eq!((none.0, none.1.evaluations), (worse, 0));
+}
+
 #[test]
 fn every_change_that_is_kept_lowers_the_error_drawn_from_scratch() {
     let mut changes = 0;
@@ -156,6 +235,7 @@ fn options(triangles: u64, shading: DrivingShading) -> Options {
             flips_every: 2,
             cameras_every: 2,
             deviation_weight: 0.2,
+            least_share: 0.0,
         },
         // Polishing is looked at, whatever becomes of its result.
         fall_back: false,

@@ -1,7 +1,8 @@
 //! Polishing: after the last collapse the vertices that are left move, and edges flip, wherever that makes the pictures
 //! better.
 //!
-//! Not in the papers. Sweeps visit the vertices by ascending id; a vertex tries positions along its normal and two
+//! Not in the papers. Sweeps visit the vertices by ascending id, but for those around which the pictures hardly differ; a
+//! vertex tries positions along its normal and two
 //! tangents at a distance that halves whenever none of them is better. Every few sweeps all edges are tried for a flip,
 //! and the cameras are turned as a whole and the original drawn again, so that the mesh fits the model and not the
 //! noise of one set of pictures. Every change that is kept lowers the error of the pictures of that moment, exactly, or
@@ -38,6 +39,10 @@ pub struct Polish {
     /// Weight of the share of the distance from the original against the share of the image error in a change;
     /// 0 is nothing. See `DistancePenalty`.
     pub deviation_weight: f64,
+    /// Least share of the squared error that the triangles around a vertex or an edge hold for it to be tried, times the
+    /// number of the sweep, 1 for the first: a star yields a few percent of its error, and the less the later. 0 tries all.
+    #[serde(default)]
+    pub least_share: f64,
 }
 
 /// Counts of the work of polishing. The same for every number of threads.
@@ -84,9 +89,10 @@ pub fn polish(
             polisher.look_through(pictures);
             rms = polisher.pictures.rms();
         }
-        polisher.moves(sweep, options.sweeps, observer)?;
+        let least_share = options.least_share * f64::from(sweep + 1);
+        polisher.moves((sweep, options.sweeps), least_share, observer)?;
         if every(options.flips_every, sweep + 1) {
-            polisher.flips(observer)?;
+            polisher.flips(least_share, observer)?;
         }
     }
     let Polisher {

@@ -38,6 +38,21 @@ struct Stand {
     changed: u32,
 }
 
+/// The squared error that every triangle holds, and the least that makes a change of some of them worth trying; all are
+/// where nothing is known.
+#[derive(Debug, Default)]
+struct Errors {
+    of_triangles: Vec<u64>,
+    least: u64,
+}
+
+impl Errors {
+    fn are_worth(&self, triangles: impl Iterator<Item = u32>) -> bool {
+        let error = |t: u32| self.of_triangles.get(t as usize).copied().unwrap_or(0);
+        self.of_triangles.is_empty() || triangles.map(error).sum::<u64>() >= self.least.max(1)
+    }
+}
+
 /// A mesh that is polished, with its pictures.
 pub(super) struct Polisher<'a> {
     pub(super) live: &'a mut LiveMesh,
@@ -98,15 +113,17 @@ impl<'a> Polisher<'a> {
         }
     }
 
-    /// One sweep over the vertices.
+    /// One sweep, the `sweep`th of `sweeps`, over the vertices that hold at least a share of the error.
     pub(super) fn moves(
         &mut self,
-        sweep: u32,
-        sweeps: u32,
+        (sweep, sweeps): (u32, u32),
+        least_share: f64,
         observer: &mut dyn Observer,
     ) -> Result<()> {
+        let errors = self.errors(least_share);
         let mut waiting: VecDeque<u32> = (0..self.live.vertex_ids())
             .filter(|&v| self.live.valence(v) > 0 && !self.stands[v as usize].settled)
+            .filter(|&v| errors.are_worth(self.live.triangles_at(v)))
             .collect();
         let total = waiting.len();
         let turn = TURN * f64::from(sweep);
@@ -211,11 +228,14 @@ impl<'a> Polisher<'a> {
         true
     }
 
-    /// Tries to flip every edge whose surroundings changed since it was last tried.
-    pub(super) fn flips(&mut self, observer: &mut dyn Observer) -> Result<()> {
+    /// Tries to flip every edge whose surroundings changed since it was last tried and that holds at least a share of the
+    /// error.
+    pub(super) fn flips(&mut self, least_share: f64, observer: &mut dyn Observer) -> Result<()> {
+        let errors = self.errors(least_share);
         self.tried.resize(self.live.edge_ids() as usize, 0);
         let mut waiting: VecDeque<u32> = (0..self.live.edge_ids())
             .filter(|&e| self.live.faces_at_edge(e) == 2 && self.may_flip(e))
+            .filter(|&e| errors.are_worth(self.faces_at(e)))
             .collect();
         let mut batch = Vec::with_capacity(BATCH);
         while !waiting.is_empty() {
@@ -276,12 +296,31 @@ impl<'a> Polisher<'a> {
 
     /// The vertices of the faces at an edge.
     fn around_edge(&self, edge: u32, into: &mut Vec<u32>) {
-        let Some([a, b]) = self.live.edge(edge) else {
-            return;
-        };
-        let faces = self.live.triangles_at(a);
-        let corners = faces.filter_map(|f| self.live.triangle(f));
-        into.extend(corners.filter(|c| c.contains(&b)).flatten());
+        let corners = self.faces_at(edge).filter_map(|f| self.live.triangle(f));
+        into.extend(corners.flatten());
+    }
+
+    /// The faces at an edge.
+    fn faces_at(&self, edge: u32) -> impl Iterator<Item = u32> {
+        let live = &*self.live;
+        let ends = live.edge(edge).into_iter();
+        ends.flat_map(move |[a, b]| {
+            let holds = move |f: &u32| live.triangle(*f).is_some_and(|c| c.contains(&b));
+            live.triangles_at(a).filter(holds)
+        })
+    }
+
+    /// The error of every triangle, and how much of it makes a change worth trying.
+    fn errors(&self, least_share: f64) -> Errors {
+        if least_share <= 0.0 {
+            return Errors::default();
+        }
+        let of_triangles = self.pictures.errors(self.live);
+        let sum: u64 = of_triangles.iter().sum();
+        Errors {
+            least: (least_share * sum as f64) as u64,
+            of_triangles,
+        }
     }
 
     /// Takes an independent set of the next items in their order: no two share one of the vertices `around` them.
