@@ -1,4 +1,4 @@
-//! What levels look like beside the original, and how far they are from it.
+//! Levels beside the original: the errors of their pictures, and how far they are from it.
 
 use serde::Serialize;
 

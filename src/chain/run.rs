@@ -168,7 +168,7 @@ struct Made {
     options: Options,
     scene: Scene,
     silhouette_error: f64,
-    /// What is seen from its switch distance, once that is known; `None` inside where there is none.
+    /// The worst that is seen from its switch distance, once that is known; `None` inside where there is none.
     seen: Option<Option<Seen>>,
 }
 
@@ -178,7 +178,7 @@ impl Made {
     }
 }
 
-/// What levels are made of, and made with.
+/// The original and the options that levels are made of.
 struct Maker<'a> {
     mesh: &'a Mesh,
     options: Options,

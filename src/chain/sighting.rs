@@ -1,4 +1,4 @@
-//! What one sees of the difference between the original and its levels: luma and outlines, view by view.
+//! The difference between the original and its levels as it is seen: luma and outlines, view by view.
 
 use crate::{
     Progress, Result,

@@ -24,7 +24,7 @@ use crate::{
 /// Halvings of the last step of the ladder: the distance is then known to 2 %.
 const BISECTIONS: u32 = 3;
 
-/// What is seen of a level from a distance, at worst.
+/// The worst that is seen of a level from a distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Seen {
     /// From the middle of the sphere.
@@ -96,7 +96,7 @@ impl Lookout<'_> {
         Ok(passed)
     }
 
-    /// What is seen of levels from a distance.
+    /// Renders levels from a distance and measures the worst of each.
     pub(super) fn look(
         &self,
         levels: &[&Scene],

@@ -35,7 +35,7 @@ impl Price {
         }
     }
 
-    /// What an exact cost looks like at this price: rounded down, at most the largest number there is.
+    /// An exact cost at this price: rounded down, at most the largest number there is.
     #[must_use]
     pub fn of_count(self, cost: i64) -> i64 {
         let (rest, whole) = (i128::from(self.rest), i128::from(WHOLE));
@@ -48,7 +48,7 @@ impl Price {
         i64::try_from(dear).unwrap_or(i64::MAX)
     }
 
-    /// What a cost looks like at this price.
+    /// A cost at this price.
     #[must_use]
     pub fn of(self, cost: f64) -> f64 {
         let (rest, whole) = (f64::from(self.rest), f64::from(WHOLE));

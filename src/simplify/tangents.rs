@@ -110,7 +110,7 @@ pub fn settle(mesh: Mesh, tangents: Tangents) -> Result<(Mesh, Option<TangentsRe
     Ok((mesh, Some(report)))
 }
 
-/// What the algorithm sees of a corner, and what it finds.
+/// A corner as the algorithm sees it, and the tangent that it finds.
 #[derive(Clone, Copy, Default)]
 struct Corner {
     position: [f32; 3],

@@ -147,7 +147,7 @@ struct Summary<'a> {
     /// Vertices that locks kept where they are.
     #[serde(skip_serializing_if = "is_zero")]
     locked_vertices: usize,
-    /// What the weights did; only where some were given.
+    /// Vertices that weights held and their means; only where some were given.
     #[serde(skip_serializing_if = "Option::is_none")]
     weights: Option<WeightsReport>,
     /// Triangles that the scene draws, each as often as its part is shown; only where that is not the number stored.

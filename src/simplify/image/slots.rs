@@ -77,7 +77,7 @@ impl Slots {
         self.color.is_some()
     }
 
-    /// What a triangle with these wedges shows at its corners; `rows` holds wedges that the mesh does not have yet.
+    /// The colours and normals that a triangle with these wedges shows at its corners; `rows` holds wedges that the mesh does not have yet.
     pub(super) fn values(&self, live: &LiveMesh, rows: &[f64], wedges: [u32; 3]) -> CornerValues {
         let of = |channel: Channel, wedge: u32| {
             let row = if wedge < live.wedge_count() {

@@ -78,7 +78,7 @@ fn mean(slots: &[u32], moments: &[Moments]) -> DVec3 {
     slots.iter().fold(DVec3::ZERO, add)
 }
 
-/// What the samples of one face want of a corner, given its other two.
+/// The normal of a corner that the samples of one face ask for, given its other two.
 fn pull(slot: usize, moments: &[Moments], normals: &[DVec3]) -> DVec3 {
     let (face, k) = (slot / 3, slot % 3);
     let (next, last) = ((k + 1) % 3, (k + 2) % 3);
