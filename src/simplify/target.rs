@@ -43,12 +43,35 @@ impl Target {
             )),
             Self::Triangles(n) => Ok(Some(usize::try_from(n).unwrap_or(usize::MAX))),
             Self::Ratio(r) if r > 0.0 && r <= 1.0 => {
-                // Rounded up, and never 0: a ratio of a small mesh leaves something.
-                Ok(Some(((r * input as f64).ceil() as usize).max(1)))
+                // Never more than the share, but for rounding of the product itself (0.29 of 100 is 29), and never 0: a
+                // ratio of a small mesh leaves something.
+                let share = r * input as f64;
+                Ok(Some(((share + share * 1e-12) as usize).max(1)))
             }
             Self::Ratio(r) => Err(Error::Usage(format!(
                 "the ratio {r} is not in (0, 1]; expected for example 0.1"
             ))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Target;
+
+    #[test]
+    fn a_ratio_is_never_exceeded_and_leaves_something() {
+        for (ratio, input, expected) in [
+            (0.1, 15_452, 1_545),
+            (0.5, 69_451, 34_725),
+            (0.29, 100, 29),
+            (0.07, 100, 7),
+            (1.0, 871_414, 871_414),
+            (0.1, 9, 1),
+            (0.5, 1, 1),
+        ] {
+            let found = Target::ratio(ratio).of(input).expect("a ratio");
+            assert_eq!(found, Some(expected), "{ratio} of {input}");
         }
     }
 }
