@@ -18,7 +18,8 @@ pub(super) struct ImageArgs {
     /// Width and height of the driving images [default: by preset]
     #[arg(long, value_name = "PIXELS")]
     size: Option<u32>,
-    /// Samples per pixel along each axis of the driving images: 1, 2 or 4 [default: by preset]
+    /// Samples per pixel along each axis of the driving images: 1, 2 or 4; 1 where the size is not given and would have too
+    /// many [default: by preset]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
     /// The shading that the result will be seen with [default: auto, which is lit where the mesh stores normals, else flat;
